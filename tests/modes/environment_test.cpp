@@ -2,6 +2,7 @@
 #include "base/gauss_legendre.h"
 #include "base/image.h"
 #include "base/random.h"
+#include "modes/area_light_limitations.h"
 #include "modes/path/path_rays.h"
 #include "modes/shared_limitations.h"
 #include "scene/scene.h"

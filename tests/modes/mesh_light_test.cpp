@@ -1,6 +1,7 @@
 // Light of surfaces that glow, in fog and on other surfaces: quadrature, march against paths, what others say of it.
 #include "base/gauss_legendre.h"
 #include "base/random.h"
+#include "modes/area_light_limitations.h"
 #include "modes/path/path_rays.h"
 #include "modes/shared_limitations.h"
 #include "scene/scene.h"

@@ -1,4 +1,6 @@
-#include "integrate/lights/environment_light.h"
+// Light of the environment that fog scatters once towards the eye. Distances are picked in proportion to what would be
+// seen from there; directions both by the light and by the phase function, which share it (balance heuristic).
+#include "integrate/lights/path_lights.h"
 
 #include "trace/lights/environment.h"
 #include "trace/occlusion/occluders.h"

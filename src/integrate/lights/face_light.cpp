@@ -1,4 +1,7 @@
-#include "integrate/lights/face_light.h"
+// Light of rectangles, discs and balls that fog scatters once towards the eye. Distances are picked both evenly in the
+// angle around the light and in proportion to what would be seen from there, which share it (balance heuristic); points
+// of the face by its solid angle.
+#include "integrate/lights/path_lights.h"
 
 #include "scene/area_shape.h"
 #include "scene/light_reach.h"

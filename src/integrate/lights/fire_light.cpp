@@ -1,4 +1,8 @@
-#include "integrate/lights/fire_light.h"
+// Light of fog that glows by grids, scattered once towards the eye by other fog. Three ways to pick a point of a ray
+// and a place in the fire share it (balance heuristic): places by power with distances even in the angle around them;
+// places by power with distances in proportion to what would be seen from there; and from those distances, directions
+// by the phase function and places by brightness on them, which is what counts within the fire.
+#include "integrate/lights/path_lights.h"
 
 #include "trace/lights/emissive_bricks.h"
 #include "trace/occlusion/occluders.h"

@@ -1,4 +1,7 @@
-#include "integrate/lights/mesh_light.h"
+// Light of glowing surfaces that fog scatters once towards the eye. Points of them are picked by area and brightness,
+// and distances both evenly in the angle around such a point and in proportion to what would be seen from there, which
+// share it (balance heuristic).
+#include "integrate/lights/path_lights.h"
 
 #include "trace/lights/emissive_triangles.h"
 #include "trace/occlusion/occluders.h"

@@ -1,5 +1,6 @@
 // Rectangles, discs and balls that light fog: huge, edge on, next to the eye, half hidden.
 #include "measure/stress/authored.h"
+#include "modes/area_light_limitations.h"
 #include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/light_filters.h"

@@ -1,5 +1,6 @@
 // Fog that gives off light by its temperature: flames small and large, near and far, hidden and veiled.
 #include "measure/stress/authored.h"
+#include "modes/area_light_limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/shadow_map/limitations.h"
 #include "modes/shared_limitations.h"

@@ -1,5 +1,6 @@
 // Surfaces that glow: what fog scatters of their light.
 #include "measure/stress/authored.h"
+#include "modes/area_light_limitations.h"
 #include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/shadow_map/limitations.h"

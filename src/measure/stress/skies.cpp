@@ -1,5 +1,6 @@
 // Light from all around: half a sky, suns in maps, thick fog, roofs.
 #include "measure/stress/authored.h"
+#include "modes/area_light_limitations.h"
 #include "modes/limitation.h"
 #include "modes/shared_limitations.h"
 #include "scene/light.h"

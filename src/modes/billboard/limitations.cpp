@@ -1,5 +1,6 @@
 #include "modes/billboard/limitations.h"
 
+#include "modes/area_light_limitations.h"
 #include "modes/billboard/billboard.h"
 #include "modes/billboard/settings.h"
 #include "modes/lens_fog.h"

@@ -1,5 +1,6 @@
 #include "modes/cone/limitations.h"
 
+#include "modes/area_light_limitations.h"
 #include "modes/cone/cone.h"
 #include "modes/cone/settings.h"
 #include "modes/lens_fog.h"

@@ -1,5 +1,6 @@
 #include "modes/froxel/limitations.h"
 
+#include "modes/area_light_limitations.h"
 #include "modes/froxel/beams/beams.h"
 #include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"

@@ -1,10 +1,7 @@
 // The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
 // the fog it crosses.
-#include "integrate/lights/environment_light.h"
-#include "integrate/lights/face_light.h"
 #include "integrate/lights/field_light.h"
-#include "integrate/lights/fire_light.h"
-#include "integrate/lights/mesh_light.h"
+#include "integrate/lights/path_lights.h"
 #include "integrate/style.h"
 #include "modes/map_shadows.h"
 #include "modes/march/exact.h"

@@ -1,5 +1,6 @@
 #include "modes/path/limitations.h"
 
+#include "modes/area_light_limitations.h"
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
 #include "trace/snapshot.h"

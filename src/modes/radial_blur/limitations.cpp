@@ -1,5 +1,6 @@
 #include "modes/radial_blur/limitations.h"
 
+#include "modes/area_light_limitations.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/radial_blur/radial_blur.h"

@@ -1,6 +1,7 @@
 #include "modes/shadow_map/limitations.h"
 
 #include "integrate/lights/fire_lamps.h"
+#include "modes/area_light_limitations.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/map_shadows.h"

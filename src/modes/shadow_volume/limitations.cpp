@@ -1,6 +1,7 @@
 #include "modes/shadow_volume/limitations.h"
 
 #include "integrate/single_scattering/single_scattering.h"
+#include "modes/area_light_limitations.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/settings.h"

@@ -34,7 +34,7 @@ inline float filter_point_angle(const Light& light) { return whole_angle(light) 
 // that it lights, as they are. None of a lamp behind the camera.
 NearLight near_to(const FroxelGrid& grid, const Light& light);
 
-// Whether rays find a light's shadows by themselves, exactly, or there are none.
+// Whether rays find the shadows of a light by themselves, exactly but for surfaces with alpha, or there are none.
 bool has_exact_shadows(const FroxelScene& scene, const Light& light);
 
 struct FroxelBeams {
@@ -50,7 +50,7 @@ struct FroxelBeams {
     std::vector<size_t> lights;      // of the scene
     std::vector<LampFog> fog;        // at each of them
     std::vector<LightDepth> grids;   // of each, without fog of closed form: rays know by themselves how that dims it
-    std::vector<bool> exact_shadows; // whether rays find them, or there are none
+    std::vector<bool> exact_shadows; // whether rays find all of them, or there are none
     std::vector<bool> by_rays_alone; // whether rays know all of it: fog of closed form and exact shadows
     LobeCuts lobe;                   // of the scene's fog
     std::vector<Reach> reaches;      // [tile · lights + light]

@@ -1,4 +1,4 @@
-#include "integrate/lights/scatter_paths.h"
+#include "integrate/lights/path_lights.h"
 
 #include "integrate/terms.h"
 #include "trace/occlusion/occluders.h"

@@ -1,4 +1,5 @@
-// Light that fog scatters once towards the eye on single ways: from points of rays to the light.
+// Lights that rays look for themselves, of fog that scatters once: from points of a ray ways are picked at random to
+// skies, faces, fire and surfaces that glow.
 #pragma once
 #include "integrate/lights/fog_points.h"
 #include "integrate/ray_batch.h"
@@ -47,4 +48,17 @@ struct PathLight {
 // A technique that adds them to what `scatter` finds, as far as surfaces and fog on the ways let them through.
 ScatterFunction with_path_lights(std::shared_ptr<const ScatteringFog> fog, std::vector<PathLight> lights,
                                  ScatterFunction scatter);
+
+// Append the lights of a snapshot as the settings see it; nothing where it has none. A ray looks along two ways for
+// each of its points to the environment and to surfaces that glow, along three to fire (of the media that only emit).
+void append_environment_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                              std::vector<PathLight>& lights);
+void append_mesh_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                       std::vector<PathLight>& lights);
+void append_fire_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                       std::vector<PathLight>& lights);
+
+// Takes the lights with a face out of the snapshot: four ways to each.
+void take_faces(Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                std::vector<PathLight>& lights);
 }
