@@ -42,6 +42,20 @@ TEST(FroxelAlpha, ASheetOverAllHalvesWhatOpaqueSurfacesLeave) {
         }
 }
 
+// Froxels at the slit's edges lie half behind the wall: what is there tells nothing of the pane.
+TEST(FroxelAlpha, APaneInASlitHalvesItsBeam) {
+    const auto light = [](float alpha) {
+        Stage stage =
+            stage_of({homogeneous_medium(0.3f, {vec3(-3, 0, -3), vec3(3, 3, 3)})}, {sun_light({0.3f, -1, 0.1f}, 2)},
+                     {quad({-50, 4, -50}, {50.2f, 0, 0}, {0, 0, 100}), quad({0.9f, 4, -50}, {50, 0, 0}, {0, 0, 100}),
+                      quad({0.2f, 4, -50}, {0.7f, 0, 0}, {0, 0, 100}, 0)});
+        stage.scene->materials[0].alpha = alpha;
+        const View view = view_of({0.5f, 1.5f, 9}, {0, 1.5f, 0});
+        return mean_of(scattered(froxels(view, stage.snapshot, {}), picture_rays(view, stage.snapshot)));
+    };
+    EXPECT_NEAR(light(0.5f) / light(0), 0.5, 0.01);
+}
+
 TEST(FroxelAlpha, StripsFinerThanAFroxelDimByTheirMean) {
     std::vector<Mesh> strips; // half of the roof is half transparent
     for (int i = 0; i < 400; ++i)

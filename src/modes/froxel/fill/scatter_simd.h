@@ -95,39 +95,60 @@ Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, co
     return visible_at_points(*occluders, light, lanes, plain, by_rays, soft ? places : nullptr);
 }
 
+// A point of each lane's froxel, and one of a soft light.
+struct SpreadPoints {
+    FroxelLanes froxels;
+    Sample2 of_light[16];
+};
+
+// Number `k` of `count` points that are spread over the fog of the froxels; other ones in each sample and frame.
+SpreadPoints spread_points(const Fill& fill, size_t index, const FroxelLanes& fog, const Job& job, int k, int count) {
+    const float froxel = static_cast<float>(fill.grid.tile);
+    const int turn = fill.pass.frame * fill.samples() + job.sample;
+    const auto number = static_cast<uint32_t>(turn * count + k);
+    alignas(64) float u[3][16];
+    SpreadPoints points{fog, {}};
+    for (size_t i = 0; i < 16; ++i) {
+        const auto tile = static_cast<uint32_t>(job.where.tile[i]);
+        const uint32_t key = hash(tile, static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
+        const Sample2 across = sample2(number, key);
+        u[0][i] = (across.x - 0.5f) * froxel, u[1][i] = (across.y - 0.5f) * froxel;
+        u[2][i] = random_unit(number, 0, 0, key), points.of_light[i] = sample2(number, hash(key, 1u));
+    }
+    const Floats x = load(u[0]), y = load(u[1]);
+    Vec3s& point = points.froxels.point;
+    point = fused(fog.toward, fog.length * load(u[2]), fog.start);
+    point = fused(splat(fill.grid.step_x), x * fog.z, fused(splat(fill.grid.origin_x), x, point));
+    point = fused(splat(fill.grid.step_y), y * fog.z, fused(splat(fill.grid.origin_y), y, point));
+    return points;
+}
+
 // Share of a light that surfaces with alpha let through, where intervals answer for the opaque ones: the mean over
-// points spread through the froxels, as one would show each leaf as large as a froxel.
+// points spread through the froxels, as one would show each leaf as large as a froxel. Points in the shade of opaque
+// surfaces do not count; those that alpha alone makes dark may be in it, too, and count as much as others are not.
 Floats alpha_share(const Fill& fill, size_t index, const FroxelLanes& lanes, const Job& job, const Mask16& wanted) {
     const Light& light = fill.scene.snapshot.lights[index];
     const auto& occluders = shadow_casters(light, fill.scene.snapshot);
     if (!fill.exact() || !occluders || !occluders->has_alpha() || !any(wanted)) return 1.0f;
     constexpr int points = 8; // of all samples of a froxel
     const int count = std::max(points / fill.samples(), 1);
-    const float froxel = static_cast<float>(fill.grid.tile);
     const FroxelLanes fog = in_fog(fill.scene.snapshot.media, lanes, job.extinction);
-    Floats sum = 0.0f;
+    Floats passed = 0.0f, all = 0.0f, open = 0.0f, shaded = 0.0f;
     for (int k = 0; k < count; ++k) {
-        alignas(64) float u[3][16];
-        Sample2 places[16];
-        for (size_t i = 0; i < 16; ++i) {
-            const auto tile = static_cast<uint32_t>(job.where.tile[i]);
-            const uint32_t key = hash(tile, static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
-            const int turn = fill.pass.frame * fill.samples() + job.sample;
-            const auto number = static_cast<uint32_t>(turn * count + k);
-            const Sample2 across = sample2(number, key);
-            u[0][i] = (across.x - 0.5f) * froxel, u[1][i] = (across.y - 0.5f) * froxel;
-            u[2][i] = random_unit(number, 0, 0, key), places[i] = sample2(number, hash(key, 1u));
-        }
-        FroxelLanes at = fog;
-        const Floats x = load(u[0]), y = load(u[1]);
-        at.point = fused(fog.toward, fog.length * load(u[2]), fog.start);
-        at.point = fused(splat(fill.grid.step_x), x * fog.z, fused(splat(fill.grid.origin_x), x, at.point));
-        at.point = fused(splat(fill.grid.step_y), y * fog.z, fused(splat(fill.grid.origin_y), y, at.point));
-        const LightSamples arrival = arriving(light, fill.scene.cones[index], at.point);
-        const Sample2* of_light = is_soft(light) ? places : nullptr;
-        sum = sum + visible_at_points(*occluders, light, at, arrival, wanted, of_light, Through::alpha);
+        const SpreadPoints at = spread_points(fill, index, fog, job, k, count);
+        const LightSamples arrival = arriving(light, fill.scene.cones[index], at.froxels.point);
+        const auto visible = [&](Through surfaces) HWY_ATTR {
+            return visible_at_points(*occluders, light, at.froxels, arrival, wanted,
+                                     is_soft(light) ? at.of_light : nullptr, surfaces);
+        };
+        const Floats by_alpha = visible(Through::alpha), by_all = visible(Through::all);
+        passed = passed + by_all, all = all + by_alpha;
+        open = open + select(by_all > 0.0f, 1.0f, 0.0f);
+        shaded = shaded + select((by_alpha > 0.0f) & (by_all <= 0.0f), 1.0f, 0.0f);
     }
-    return sum * (1.0f / static_cast<float>(count));
+    const float total = static_cast<float>(count);
+    const Floats lit = open / max(open + shaded, 1.0f), dark = Floats(total) - open - shaded;
+    return select(open > 0.0f, passed / max(open + dark * lit, 1.0f), all * (1.0f / total));
 }
 
 // What arrives where a froxel is large beside its distance from the light.
