@@ -93,6 +93,19 @@ TEST(GridEmission, AbsorbingBoxIsItsClosedForm) {
                  "kelvin as it absorbs");
 }
 
+// Nearly all places on a line through thick smoke are hidden in it: picked there alone, this would be 1.5 of noise.
+TEST(GridEmission, InThickSmokePathsSeeWhatTheyCollideWith) {
+    const Scratch scratch;
+    constexpr double extinction = 100;
+    Scene scene;
+    const Snapshot snapshot =
+        snapshot_with(scene, glowing(scratch, BlackbodyKind::kelvin, static_cast<float>(extinction)));
+    const dvec3 expected = 0.25 * dvec3(1, 0.5, 1) * blackbody_color(BlackbodyKind::kelvin, hot) / extinction;
+    const RayEstimate traced = test::traced(snapshot, inside, 64, 0);
+    EXPECT_NEAR(traced.value.x, expected.x, sigmas * traced.error.x);
+    EXPECT_LT(traced.error.x, 0.1 * expected.x);
+}
+
 // A whole ray meets the edges, where the temperature falls to 0 within a voxel.
 TEST(GridEmission, SteepEdgesAreResolved) {
     const Scratch scratch;

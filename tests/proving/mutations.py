@@ -93,6 +93,8 @@ FAULTS = [
     of_light("gobo-a-texel-off", "src/scene/gobo.cpp", "at * texels + 0.5,", "at * texels + 1.5,", r"scene\.gobo"),
     of_light("nanovdb-turned", "src/volume/vdb/nano_tree.cpp", "return {number >> 2 * bits, number >> bits & mask, number & mask};",
              "return {number & mask, number >> bits & mask, number >> 2 * bits};", r"volume\.nano"),
+    of_light("fire-counted-twice-in-smoke", "src/modes/path/fog.cpp", "{place.line_density / chance,", "{1,",
+             r"modes\.(grid_emission|fire_light)"),
     of_light("lamps-brighter-than-their-fire", "src/integrate/lights/fire_lamps.cpp", "part.candela += place.candela,",
              "part.candela += 1.1 * place.candela,", r"modes\.fire_light"),
 ]

@@ -6,6 +6,22 @@
 
 namespace tyndall {
 namespace {
+// Of the chance to collide, what counts beside picking: places on a line are picked by their brightness, collisions are
+// not. Between 1/4 and 1/16 noise is within 5 % of its least, in flames of 0.5 as in those of 200 optical depths.
+constexpr float collision_share = 1.0f / 8;
+}
+
+float colliding_chance(const Snapshot& snapshot, vec3 position, int& lookups) {
+    float extinction = 0;
+    for (const Medium& medium : snapshot.media) {
+        if (only_emits(medium.optics)) continue;
+        extinction += grey_extinction(medium.optics) * density_at(medium, position);
+        ++lookups;
+    }
+    return collision_share * extinction;
+}
+
+namespace {
 void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
     fog.position = position, fog.total = 0;
     fog.extinction.resize(snapshot.media.size()), fog.albedo.resize(snapshot.media.size());
@@ -106,12 +122,18 @@ Interval<float> thin_range(const Segment& line, const Medium& medium) {
     return medium.majorant() * inside.length() < 1 ? inside : Interval<float>{};
 }
 
-// Share of the light found on a line that is not found by aiming at it from where the line began (balance heuristic).
-float unaimed_share(const Segment& line, const EmissionOnLine& hit) {
-    if (!(line.walker.density > 0)) return 1;
-    const float away = line.travelled + hit.distance, found = line.walker.density * hit.place.line_density;
-    const float aimed = hit.place.density * away * away;
-    return found + aimed > 0 ? found / (found + aimed) : 0;
+// A place in the fire is found in three ways that share its light (balance heuristic): by aiming at it from where the
+// line began, by picking a place on the line, which in thin fog finds nearly all, and where paths collide, which in
+// thick fog is where the fire is seen. What dims the line is left out of the chances of the last two.
+struct FireShares {
+    float picked = 0, collided = 0;
+};
+FireShares fire_shares(const Segment& line, const EmissivePlace& place, float distance, float colliding) {
+    const float found = place.line_density + colliding, away = line.travelled + distance;
+    const bool aims = line.walker.density > 0; // the eye does not
+    const float chance = aims ? found + place.density * away * away / line.walker.density : found;
+    if (!(chance > 0)) return {};
+    return {place.line_density / chance, colliding / chance};
 }
 
 void gather_field(const Walk& walk, Segment& line, size_t number) {
@@ -119,9 +141,12 @@ void gather_field(const Walk& walk, Segment& line, size_t number) {
     stretch.t_max = line.end;
     const EmissionOnLine hit = emission_on_line(*walk.tracer.fire, number, stretch, line.numbers(use_emission).x);
     if (!(hit.inverse_density > 0)) return;
-    ++walk.results[line.walker.lane].steps;
+    int& lookups = walk.results[line.walker.lane].steps;
+    ++lookups;
     if (!(max_component(hit.place.emission) > 0)) return;
-    const float share = line.through * passing_share(walk, line, {0, hit.distance}) * unaimed_share(line, hit);
+    const float colliding = colliding_chance(walk.snapshot, hit.place.position, lookups);
+    const float share = line.through * passing_share(walk, line, {0, hit.distance}) *
+                        fire_shares(line, hit.place, hit.distance, colliding).picked;
     add_light(walk, line, hit.place.emission * (share * hit.inverse_density), OtherLight::emission,
               walk.order == 0 || line.walker.in_fog);
 }
@@ -213,6 +238,7 @@ void gather_sky_at_collision(const Walk& walk, Segment& line, const FogPoint& fo
 void gather_at_collision(const Walk& walk, Segment& line, float distance, const FogPoint& fog) {
     const Snapshot& snapshot = walk.snapshot;
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
+    int& lookups = walk.results[line.walker.lane].steps;
     const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
     if (pick.chance > 0) {
         const LineLight& along = walk.scratch.lights[pick.light];
@@ -230,7 +256,8 @@ void gather_at_collision(const Walk& walk, Segment& line, float distance, const 
         const EmissivePlace target = pick_fire(walk, line);
         const Connection connection = connection_to_fire(fog.position, target);
         const float cosine = glm::dot(connection.to_light, line.rest.direction), away = connection.fog_length;
-        const float chance = target.density * away * away + fog.density(snapshot, cosine) * target.line_density;
+        const float found = target.line_density + colliding_chance(snapshot, target.position, lookups);
+        const float chance = target.density * away * away + fog.density(snapshot, cosine) * found;
         if (chance > 0)
             queue(walk, line, connection, fog.scattered(snapshot, cosine) * target.emission / chance, in_fog);
     }
@@ -245,6 +272,16 @@ void gather_at_collision(const Walk& walk, Segment& line, float distance, const 
     if (facing > 0 && chance > 0)
         queue(walk, line, connection,
               fog.scattered(snapshot, cosine) * target.emission / (chance + fog.density(snapshot, cosine)), in_fog);
+}
+
+void gather_fire_at_collision(const Walk& walk, Segment& line, float distance, const FogPoint& fog) {
+    for (size_t field = 0; field < walk.tracer.fire->fields.size(); ++field) {
+        const EmissivePlace place = emissive_place_at(*walk.tracer.fire, field, fog.position);
+        if (!(max_component(place.emission) > 0)) continue;
+        const float share = fire_shares(line, place, distance, collision_share * fog.total).collided;
+        add_light(walk, line, place.emission * (share / fog.total), OtherLight::emission,
+                  walk.order == 0 || line.walker.in_fog);
+    }
 }
 
 // Where the path collides with fog on this stretch it gathers light and turns.
@@ -265,10 +302,12 @@ void collide(const Walk& walk, Segment& line) {
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
     if (thin_range(line, snapshot.media[hit]).empty())
         add_light(walk, line, optics.emission.radiance / grey_extinction(optics), OtherLight::emission, in_fog);
-    if (!walk.turns) return;
+    if (!walk.turns && !walk.tracer.fire) return;
     FogPoint& fog = walk.scratch.fog;
     look_at_fog(snapshot, line.rest.at(nearest), fog, walk.results[line.walker.lane].steps);
     if (!(fog.total > 0)) return;
+    if (walk.tracer.fire) gather_fire_at_collision(walk, line, nearest, fog);
+    if (!walk.turns) return;
     gather_at_collision(walk, line, nearest, fog);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
     const float density = fog.density(snapshot, glm::dot(direction, line.rest.direction));

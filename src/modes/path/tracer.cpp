@@ -56,7 +56,9 @@ void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surf
         Connection connection = connection_to_fire(surface.position, target);
         connection.face_normal = surface.face_normal;
         const float cosine = glm::dot(surface.normal, connection.to_light), away = connection.fog_length;
-        const float chance = target.density * away * away + std::max(cosine, 0.0f) / pi * target.line_density;
+        const float found = target.line_density +
+                            colliding_chance(walk.snapshot, target.position, walk.results[line.walker.lane].steps);
+        const float chance = target.density * away * away + std::max(cosine, 0.0f) / pi * found;
         if (cosine > 0 && chance > 0)
             queue(walk, line, connection, reflected * target.emission * (cosine / chance), line.walker.in_fog);
     }

@@ -117,6 +117,9 @@ void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight 
 // Queues a connection that brings `light` down the line when nothing is in its way.
 void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog);
 
+// Chance per metre with which a path finds a place of the fire by colliding there, as it counts beside other ways.
+float colliding_chance(const Snapshot& snapshot, vec3 position, int& lookups);
+
 // A place in glowing fog to aim at from the line.
 EmissivePlace pick_fire(const Walk& walk, const Segment& line);
 

@@ -87,6 +87,13 @@ std::shared_ptr<const EmissiveBricks> emissive_bricks(const Snapshot& snapshot) 
     return fire->bricks.empty() ? nullptr : fire;
 }
 
+EmissivePlace emissive_place_at(const EmissiveBricks& fire, size_t field, vec3 position) {
+    const BrickPool& pool = *fire.fields[field].density.bricks;
+    const ivec3 brick = glm::clamp(ivec3(glm::floor(local_point(pool, position) / 8.0f)), ivec3(0), pool.size - 1);
+    return place_in(fire, field, static_cast<size_t>((brick.x * pool.size.y + brick.y) * pool.size.z + brick.z),
+                    position);
+}
+
 EmissivePlace pick_emissive_place(const EmissiveBricks& fire, float u, vec3 v) {
     const auto found = std::ranges::upper_bound(fire.cumulative, static_cast<double>(u));
     const auto index = std::min<size_t>(static_cast<size_t>(found - fire.cumulative.begin()), fire.bricks.size() - 1);
@@ -119,13 +126,9 @@ PickedCell pick_cell(const BrickPool& luminance, const Ray& line, float u) {
 }
 
 EmissionOnLine emission_on_line(const EmissiveBricks& fire, size_t field, const Ray& line, float u) {
-    const BrickPool& pool = *fire.fields[field].density.bricks;
-    const PickedCell picked = pick_cell(pool, line, u);
+    const PickedCell picked = pick_cell(*fire.fields[field].density.bricks, line, u);
     if (!(picked.inverse_density > 0)) return {};
     const auto distance = static_cast<float>(picked.distance);
-    const vec3 position = line.at(distance);
-    const ivec3 brick = glm::clamp(ivec3(glm::floor(local_point(pool, position) / 8.0f)), ivec3(0), pool.size - 1);
-    const auto cell = static_cast<size_t>((brick.x * pool.size.y + brick.y) * pool.size.z + brick.z);
-    return {place_in(fire, field, cell, position), distance, static_cast<float>(picked.inverse_density)};
+    return {emissive_place_at(fire, field, line.at(distance)), distance, static_cast<float>(picked.inverse_density)};
 }
 }

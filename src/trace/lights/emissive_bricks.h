@@ -37,6 +37,7 @@ struct EmissivePlace {
     float line_density = 0;        // per metre: a guess at that of emission_on_line(), the same from both sides
 };
 EmissivePlace pick_emissive_place(const EmissiveBricks& fire, float u, vec3 v);
+EmissivePlace emissive_place_at(const EmissiveBricks& fire, size_t field, vec3 position);
 
 // A place on a line 0..t_max, picked in proportion to how bright each cell of the line can be.
 struct EmissionOnLine {

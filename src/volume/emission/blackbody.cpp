@@ -58,10 +58,7 @@ dvec3 in_gamut(dvec3 rgb) {
 dvec3 blackbody_color(BlackbodyKind kind, double kelvin, double intensity) {
     if (!(kelvin > 0) || (kind == BlackbodyKind::pbrt && kelvin <= 100)) return dvec3(0);
     if (kind == BlackbodyKind::kelvin) return in_gamut(rec709_from_xyz(blackbody_xyz(kelvin)));
-    if (kind == BlackbodyKind::pbrt) {
-        static const double even = observed([](double) { return 1.0; }).y;
-        return in_gamut(rec709_from_xyz(relative_xyz(kelvin) / even));
-    }
+    if (kind == BlackbodyKind::pbrt) return in_gamut(rec709_from_xyz(relative_xyz(kelvin)));
     const dvec3 xyz = relative_xyz(kelvin);
     if (!(xyz.y > 0)) return dvec3(0);
     constexpr double stefan_boltzmann = 5.670373e-8 * 1e-6 * std::numbers::inv_pi;

@@ -94,13 +94,13 @@ TEST(Blackbody, CyclesCutsOffWhatIsBelowZero) {
     }
 }
 
-// Both are the same spectrum: what is between them is its maximum, 683 lm/W and pbrt's ∫ ȳ = 106.856895 nm.
+// Both are the same spectrum: what is between them is its maximum and 683 lm/W per metre; pbrt counts in nanometres.
 TEST(Blackbody, PbrtIsPlanckOverItsMaximum) {
     for (const double kelvin : {1000.0, 2500.0, 6500.0}) {
         const double peak = planck_radiance(2.897771955e-3 / kelvin, kelvin);
         const double ratio = luminance_of(blackbody_color(BlackbodyKind::kelvin, kelvin)) /
                              luminance_of(blackbody_color(BlackbodyKind::pbrt, kelvin));
-        EXPECT_NEAR(ratio, 683 * 106.856895e-9 * peak, ratio * 0.005) << kelvin;
+        EXPECT_NEAR(ratio, 683e-9 * peak, ratio * 0.005) << kelvin;
     }
     EXPECT_EQ(blackbody_color(BlackbodyKind::pbrt, 100), dvec3(0));
 }
