@@ -14,9 +14,11 @@ class Model:
     def __init__(self):
         self.materials, self.nodes, self.animations, self.images = [], [], [], []
 
-    def material(self, name, color, emission=None, leaf=None):
+    def material(self, name, color, emission=None, leaf=None, alpha=1):
         """leaf: the bytes of a PNG whose alpha cuts out what is there, seen from both sides; one PNG may serve several."""
-        entry = {"name": name, "pbrMetallicRoughness": {"baseColorFactor": [*color, 1], "metallicFactor": 0}}
+        entry = {"name": name, "pbrMetallicRoughness": {"baseColorFactor": [*color, alpha], "metallicFactor": 0}}
+        if alpha < 1:
+            entry.update(alphaMode="BLEND", doubleSided=True)
         if emission:
             peak = max(emission)
             entry["emissiveFactor"] = [c / peak for c in emission]
@@ -29,11 +31,11 @@ class Model:
         self.materials.append(entry)
         return len(self.materials) - 1
 
-    def node(self, name, parts, translation=(0, 0, 0), spin=None, path=None, turn=0, scale=1):
+    def node(self, name, parts, translation=(0, 0, 0), spin=None, path=None, turn=0, scale=1, matrix=None):
         """parts: list of (material, triangles), a mesh that nodes given the same list share; spin: (axis, [(seconds, degrees),
-        ...]) animates the rotation, path: [(seconds, place, scale), ...] the rest; turn: degrees about Y."""
+        ...]) animates the rotation, path: [(seconds, place, scale), ...] the rest; turn: degrees about Y; matrix: in place of all that."""
         self.nodes.append({"name": name, "parts": parts, "translation": list(translation), "spin": spin, "path": path,
-                           "turn": turn, "scale": scale})
+                           "turn": turn, "scale": scale, "matrix": matrix})
 
     def write(self, path):
         blob, views, accessors, meshes, nodes = bytearray(), [], [], [], []
@@ -78,7 +80,8 @@ class Model:
             if id(node["parts"]) not in known:
                 known[id(node["parts"])] = len(meshes)
                 meshes.append({"name": node["name"], "primitives": [primitive(*part) for part in node["parts"]]})
-            nodes.append({"name": node["name"], "mesh": known[id(node["parts"])], "translation": node["translation"]})
+            nodes.append({"name": node["name"], "mesh": known[id(node["parts"])]})
+            nodes[-1].update({"matrix": node["matrix"]} if node["matrix"] else {"translation": node["translation"]})
             if node["turn"]:
                 half = math.radians(node["turn"]) / 2
                 nodes[-1]["rotation"] = [0, round(math.sin(half), 6), 0, round(math.cos(half), 6)]
@@ -415,8 +418,9 @@ if __name__ == "__main__":
     from campfire import campfire
     from concert import concert
     from forest import forest_morning
+    from matchbulb import explosion_ground, matchbulb
 
     makers = {"window": window, "spotlight": spotlight, "pillars": pillars, "lantern": lantern, "campfire": campfire,
-              "forest_morning": forest_morning, "concert": concert}
+              "forest_morning": forest_morning, "concert": concert, "pbrt/matchbulb": matchbulb, "pbrt/ground": explosion_ground}
     for name in sys.argv[1:] or makers:
         makers[name]().write(pathlib.Path(__file__).parent / f"{name}.glb")

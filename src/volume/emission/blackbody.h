@@ -31,10 +31,9 @@ dvec3 blackbody_tint(double kelvin);
 //   kelvin: radiance, nits.
 //   cycles: 5.670373e-8 · 1e-6 / π · (1 - intensity + intensity T⁴) × the color at luminance 1, with what is below 0
 //           cut off (Blender's Principled Volume, kernel/svm/closure.h): brighter by up to 1 % from 1200 K on.
-//   pbrt: Planck's law over its own maximum, summed over the observer's curves as pbrt's film does it (an even spectrum
-//   of
-//         1 is 106.9 nits: only its lights are scaled to nits); 0 at or below 100 K (pbrt-v4 media.h, film.h,
-//         lights.cpp).
+//   pbrt: Planck's law over its own maximum, summed over the observer's curves as pbrt's film does it: an even spectrum
+//         of 1 is 106.9 nits, as only its lights are scaled to nits (pbrt-v4 media.h, film.h, lights.cpp); 0 at or
+//         below 100 K.
 dvec3 blackbody_color(BlackbodyKind kind, double kelvin, double intensity = 1);
 
 // Below this some channel was negative: redder than Rec.709 can be, kelvin.
