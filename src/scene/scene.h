@@ -171,6 +171,7 @@ struct EnvironmentSource {
     Keyed<float> intensity{1.0f}, exposure{0.0f}; // factor on the map, and stops
     Keyed<float> volume_scale{1.0f}, surface_scale{1.0f};
     bool shadows = true;
+    std::vector<bool> casters, lit; // as those of a LightSource
 };
 
 // A hand-placed beam card for the billboard technique.

@@ -161,7 +161,8 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     std::ranges::stable_partition(snapshot.lights, [](const Light& light) { return !light.area; });
     snapshot.ambient = scene.ambient.at(moment.seconds);
     snapshot.background = background_at(scene.background, moment.seconds);
-    snapshot.environment = environment_at(scene, moment.seconds, previous ? previous->environment.get() : nullptr);
+    snapshot.environment =
+        environment_at(scene, moment.seconds, links.of_environment, previous ? previous->environment.get() : nullptr);
     add_media(scene, moment, previous, missing, snapshot);
 
     const double start = steady_seconds();

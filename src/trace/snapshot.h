@@ -98,10 +98,12 @@ Snapshot channel_of(const Snapshot& snapshot, int channel);
 
 // The surfaces that shadow the light; null = none does.
 const std::shared_ptr<const Occluders>& shadow_casters(const Light& light, const Snapshot& snapshot);
+const std::shared_ptr<const Occluders>& shadow_casters(const Environment& environment, const Snapshot& snapshot);
 
 // Whether an instance of the scene shadows the light, and whether the light shines on it.
 bool shadows_light(const Light& light, const Snapshot& snapshot, int instance);
 bool is_lit(const Light& light, const Snapshot& snapshot, int instance);
+bool is_lit(const Environment& environment, const Snapshot& snapshot, int instance);
 
 // Whether light gets through a surface that shadows one of the lights.
 bool has_alpha_shadows(const Snapshot& snapshot);

@@ -2,6 +2,7 @@
 #include "base/random.h"
 #include "integrate/ray_batch.h"
 #include "modes/mode.h"
+#include "modes/path/path_rays.h"
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "scene/scene.h"
@@ -175,6 +176,61 @@ TEST(LightLinks, ALightShinesOnTheObjectsThatItIsLinkedTo) {
     EXPECT_NEAR(seen({}), 10 / pi * (1 + 0.25f), 1e-4);
     EXPECT_NEAR(seen({false, true}), 10 / pi * 0.25f, 1e-4);
     EXPECT_NEAR(seen({true, false}), 10 / pi * (1 + 0.25f), 1e-4);
+}
+
+// The room below an even sky of 1 nit, and below a roof.
+Scene roofed() {
+    Scene scene = room({});
+    scene.environment.emplace();
+    scene.environment->map.stated = true, scene.environment->map.color = vec3(1);
+    add_mesh(scene, box_of({-3.5f, 4.2f, -3.5f}, {3.5f, 4.3f, 3.5f}));
+    return scene;
+}
+
+RayEstimate along(const char* mode, const Snapshot& snapshot, const Ray& ray, vec3 (*light)(const Scatter&)) {
+    return estimate_ray(find_mode(mode).prepare(camera_view(), snapshot, quick_settings(), nullptr), ray, 1024, light);
+}
+
+void expect_same(const RayEstimate& a, const RayEstimate& b, const char* what) {
+    EXPECT_NEAR(a.value.x, b.value.x, 4.5 * std::hypot(a.error.x, b.error.x) + 1e-6) << what;
+    EXPECT_LT(a.error.x, 0.02 * a.value.x + 1e-6) << what;
+}
+
+TEST(LightLinks, ARoofShadowsTheSkyThatItIsLinkedTo) {
+    Scene dark = roofed(), linked = roofed(), flagged = roofed(), open = roofed();
+    linked.environment->casters = {true, true, false};
+    flagged.instances[2].casts_shadows = false;
+    open.instances.pop_back();
+    const Ray ray{{-1, 2, 5}, {0, 0, -1}, 10};
+    for (const char* mode : {"march", "path"}) {
+        const RayEstimate expected = along(mode, at_start(open), ray, fog_light);
+        EXPECT_LT(along(mode, at_start(dark), ray, fog_light).value.x, 0.8 * expected.value.x) << mode;
+        for (const Scene* scene : {&linked, &flagged})
+            expect_same(along(mode, at_start(*scene), ray, fog_light), expected, mode);
+    }
+}
+
+// A white floor is as bright as the sky, where that shines on it.
+TEST(LightLinks, TheSkyShinesOnTheObjectsThatItIsLinkedTo) {
+    for (const bool lit : {true, false}) {
+        Scene scene = roofed();
+        scene.media.clear(), scene.instances.resize(1);
+        scene.environment->lit = {lit};
+        const Snapshot snapshot = at_start(scene);
+        const Ray ray{{2, 0.5f, 0}, {0, -1, 0}, 10};
+        const RayEstimate path = along("path", snapshot, ray, surface_light);
+        EXPECT_NEAR(path.value.x, lit ? 1 : 0, 4.5 * path.error.x + 1e-6);
+        EXPECT_LT(path.error.x, 0.02);
+
+        Hits hits;
+        snapshot.occluders->closest({&ray, 1}, 0, hits);
+        const SurfacePoint point = snapshot.occluders->surface(ray, hits, 0);
+        std::vector<vec2> u;
+        for (uint32_t i = 0; i < 4096; ++i) u.push_back({sample2(i, 1).x, sample2(i, 1).y});
+        vec3 radiance;
+        shade_surfaces(snapshot, {}, {&point, 1}, u, {&radiance, 1});
+        EXPECT_NEAR(radiance.x, lit ? 1 : 0, 0.005);
+    }
 }
 
 TEST(LightLinks, ScatteredLightLeavesABulbWithoutShadows) {

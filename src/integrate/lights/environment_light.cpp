@@ -44,9 +44,7 @@ void append_ray(const Environment& environment, const ScatteringFog& fog, const 
 void append_environment_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
                               std::vector<PathLight>& lights) {
     if (!snapshot.environment) return;
-    const bool shadowed =
-        shadows && snapshot.environment->shadows && snapshot.occluders && !snapshot.occluders->empty();
-    lights.push_back({shadowed ? snapshot.occluders : nullptr, OtherLight::ambient,
+    lights.push_back({shadows ? shadow_casters(*snapshot.environment, snapshot) : nullptr, OtherLight::ambient,
                       [environment = snapshot.environment, fog = std::move(fog)](
                           const RayBatch& batch, size_t i, const SeenFog& seen, std::vector<ScatterPath>& paths) {
                           append_ray(*environment, *fog, batch, i, seen, paths);

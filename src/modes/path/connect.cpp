@@ -13,10 +13,7 @@ namespace {
 // Shadow rays through the surfaces that shadow each light: all, or for some lights a set of them.
 void pass_surfaces(const Snapshot& snapshot, std::span<const Connection> connections, Occluders::ShadowRays& rays,
                    float* shares) {
-    const auto set_of = [&](size_t i) {
-        const int light = i < connections.size() ? connections[i].light_index : -1;
-        return light < 0 ? -1 : snapshot.lights[static_cast<size_t>(light)].casters;
-    };
+    const auto set_of = [&](size_t i) { return i < connections.size() ? connections[i].casters : -1; };
     int32_t wanted[16];
     std::copy_n(rays.active, 16, wanted);
     for (int set = -1; set < static_cast<int>(snapshot.casters.size()); ++set) {
@@ -39,7 +36,7 @@ Connection connection_to_face(const Light& light, vec3 point, int index, vec2 u)
     c.fog_length = sample.distance, c.shadow_length = sample.distance * 0.9999f;
     c.irradiance =
         radiance_of(light) * sample.steradians * face_picture(*light.area, point + sample.distance * sample.direction);
-    c.shadows = light.shadows, c.light_index = index;
+    c.shadows = light.shadows, c.casters = light.casters, c.light_index = index;
     return c;
 }
 
@@ -87,7 +84,7 @@ Connection connection_to_light(const PathTracer& tracer, vec3 point, int index, 
     c.fog_length = infinity;
     if (!is_distant(light)) c.fog_length = std::max(0.0f, glm::length(light.position - point) - light.radius);
     c.shadow = shadow.direction, c.shadow_length = shadow.t_max;
-    c.shadows = light.shadows, c.light_index = index;
+    c.shadows = light.shadows, c.casters = light.casters, c.light_index = index;
     return c;
 }
 
@@ -116,7 +113,7 @@ Connection connection_to_sky(const Environment& environment, vec3 point, vec3 di
     c.point = point;
     c.to_light = c.shadow = direction;
     c.fog_length = c.shadow_length = infinity;
-    c.shadows = environment.shadows, c.other = OtherLight::ambient;
+    c.shadows = environment.shadows, c.casters = environment.casters, c.other = OtherLight::ambient;
     return c;
 }
 

@@ -14,6 +14,7 @@ struct Connection {
     vec3 shadow{0};       // unit, to a point of the light: the way of the shadow ray
     float shadow_length = 0;
     bool shadows = true;
+    int casters = -1;     // set of the snapshot whose surfaces may be in the way; -1 = all
     vec3 light{0};        // what reaches the eye if nothing is in the way
     vec3 irradiance{0};   // of a light with a face: what arrives from it by this connection, facing it
     int light_index = -1; // of the snapshot; -1 = none of its lights, but the next

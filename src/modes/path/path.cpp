@@ -25,8 +25,7 @@ bool has_emission(const PathTracer& tracer) {
 
 // Whether light from all around is the same on a shadow ray and on a line that leaves the scene.
 bool finds_sky(const Snapshot& snapshot) {
-    return snapshot.environment && snapshot.environment->shadows &&
-           (!snapshot.scene || std::ranges::all_of(snapshot.scene->instances, &Instance::casts_shadows));
+    return snapshot.environment && snapshot.environment->shadows && snapshot.environment->casters < 0;
 }
 }
 

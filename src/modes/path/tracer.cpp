@@ -62,7 +62,7 @@ void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surf
         if (cosine > 0 && chance > 0)
             queue(walk, line, connection, reflected * target.emission * (cosine / chance), line.walker.in_fog);
     }
-    if (walk.snapshot.environment)
+    if (walk.snapshot.environment && is_lit(*walk.snapshot.environment, walk.snapshot, surface.instance))
         gather_sky(
             walk, line, surface.position, surface.face_normal, walk.snapshot.environment->surface_scale,
             line.walker.in_fog,
@@ -87,7 +87,8 @@ void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) 
     const float cosine = std::sqrt(std::max(0.0f, 1 - u.x));
     const vec3 direction = cosine_direction(surface.normal, u);
     const vec3 origin = off_surface(surface.position, surface.face_normal, direction);
-    const float sky_scale = walk.tracer.finds_sky ? walk.snapshot.environment->surface_scale : 0;
+    const bool finds_sky = walk.tracer.finds_sky && is_lit(*walk.snapshot.environment, walk.snapshot, surface.instance);
+    const float sky_scale = finds_sky ? walk.snapshot.environment->surface_scale : 0;
     scatter(walk, line, {origin, direction}, surface.base_color, cosine / pi, sky_scale, line.walker.in_fog);
 }
 

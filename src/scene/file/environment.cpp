@@ -3,15 +3,12 @@
 
 namespace tyndall {
 namespace {
-constexpr std::string_view own_fields[] = {"name",         "type",          "color",     "sky",
-                                           "image",        "rotation",      "intensity", "exposure",
-                                           "volume_scale", "surface_scale", "shadows",   "visible"};
+constexpr std::string_view own_fields[] = {"name",     "type",      "color",      "sky",          "image",
+                                           "rotation", "intensity", "exposure",   "volume_scale", "surface_scale",
+                                           "shadows",  "visible",   "light_link", "shadow_link"};
 constexpr const char* map_fields[] = {"color", "sky", "image"};
 
 void check_fields(const Field& field) {
-    for (const char* name : {"light_link", "shadow_link"})
-        if (const Field link = field.member(name))
-            refuse(link, "is not for an environment: it lights every object, and every object shadows it");
     for (const auto& [name, value] : field.json->members)
         if (std::ranges::find(own_fields, name) == std::end(own_fields))
             refuse(field.member(name), "is for lights with a place or a direction; this light is an environment");
@@ -35,7 +32,7 @@ void show(const Field& field, const EnvironmentSource& environment, Background& 
     background.intensity = environment.intensity, background.exposure = environment.exposure;
 }
 
-EnvironmentSource read_one(const Field& field) {
+EnvironmentSource read_one(const Field& field, const Scene& scene) {
     EnvironmentSource environment;
     environment.name = field.json->string_or("name", "environment");
     const auto number = [&](const char* name, Keyed<float>& value) {
@@ -44,6 +41,8 @@ EnvironmentSource read_one(const Field& field) {
     number("intensity", environment.intensity), number("exposure", environment.exposure);
     number("volume_scale", environment.volume_scale), number("surface_scale", environment.surface_scale);
     environment.shadows = field.json->boolean_or("shadows", true);
+    if (const Field link = field.member("light_link")) environment.lit = read_link(link, scene);
+    if (const Field link = field.member("shadow_link")) environment.casters = read_link(link, scene);
     return environment;
 }
 
@@ -70,7 +69,7 @@ void read_environment(const Field& root, Scene& scene) {
         if (!is_environment(field)) continue;
         if (scene.environment) refuse(field, "a second environment; a scene has one");
         check_fields(field);
-        EnvironmentSource environment = read_one(field);
+        EnvironmentSource environment = read_one(field, scene);
         if (std::ranges::find(scene.lights, environment.name, &LightSource::name) != scene.lights.end())
             refuse(field.member("name") ? field.member("name") : field, "another light has this name already");
         if (has_map(field)) {

@@ -152,11 +152,11 @@ RayStrata strata_by_pilot(const Snapshot& snapshot, const LightPathRules& rules,
 }
 
 // Which surfaces a light shines on and is shadowed by.
-void add_links(const Light& light, const Snapshot& snapshot, CacheKey& key) {
-    key.add(light.lit), key.add(light.casters);
-    if (light.casters >= 0) key.add(snapshot.casters[static_cast<size_t>(light.casters)].occluders);
-    if (light.lit < 0) return;
-    for (const bool instance : snapshot.lit[static_cast<size_t>(light.lit)]) key.add(instance);
+void add_links(int casters, int lit, const Snapshot& snapshot, CacheKey& key) {
+    key.add(lit), key.add(casters);
+    if (casters >= 0) key.add(snapshot.casters[static_cast<size_t>(casters)].occluders);
+    if (lit < 0) return;
+    for (const bool instance : snapshot.lit[static_cast<size_t>(lit)]) key.add(instance);
 }
 
 // Where a light's intensity goes.
@@ -179,11 +179,11 @@ void add_phase(const Phase& phase, CacheKey& key) {
     for (const float value : phase.shape->table.values) key.add(value);
 }
 
-void add_environment(const Environment& environment, CacheKey& key) {
+void add_environment(const Environment& environment, const Snapshot& snapshot, CacheKey& key) {
     const BackgroundNow& map = environment.map;
     key.add(map.kind).add(map.color).add(map.zenith).add(map.ground).add(map.image).add(map.intensity);
     key.add(map.rotation).add(environment.scale).add(environment.volume_scale).add(environment.surface_scale);
-    key.add(environment.shadows);
+    key.add(environment.shadows), add_links(environment.casters, environment.lit, snapshot, key);
 }
 
 CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed) {
@@ -192,11 +192,11 @@ CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, 
     key.add(snapshot.occluders).add(snapshot.bounds);
     key.add(settings.orders).add(settings.resolution).add(settings.paths);
     for (const Light& light : snapshot.lights) {
-        add_links(light, snapshot,
+        add_links(light.casters, light.lit, snapshot,
                   key.add(light).add(light.intensity).add(light.volume_scale).add(light.surface_scale));
         add_filter(light, key);
     }
-    if (snapshot.environment) add_environment(*snapshot.environment, key);
+    if (snapshot.environment) add_environment(*snapshot.environment, snapshot, key);
     for (const Medium& medium : snapshot.media) {
         const Optics& optics = medium.optics;
         key.add(medium.density.kind).add(grey_extinction(optics)).add(optics.albedo);

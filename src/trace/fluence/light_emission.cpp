@@ -69,6 +69,7 @@ LightSquare square_of(const std::shared_ptr<const Environment>& environment, con
     Light light;
     light.name = environment->name, light.kind = LightKind::sun, light.shadows = environment->shadows;
     light.volume_scale = environment->volume_scale, light.surface_scale = environment->surface_scale;
+    light.casters = environment->casters, light.lit = environment->lit;
     LightSquare square;
     square.environment = environment, square.as_light = std::make_shared<const Light>(std::move(light));
     square.light = square.as_light.get();

@@ -143,7 +143,8 @@ float environment_density(const Environment& environment, vec3 direction) {
     return table.densities[static_cast<size_t>(cell.y) * table.cells.x + cell.x];
 }
 
-std::shared_ptr<const Environment> environment_at(const Scene& scene, double seconds, const Environment* previous) {
+std::shared_ptr<const Environment> environment_at(const Scene& scene, double seconds, ivec2 links,
+                                                  const Environment* previous) {
     if (!scene.environment) return nullptr;
     const EnvironmentSource& source = *scene.environment;
     const auto made = make_environment(background_at(source.map, seconds), previous);
@@ -153,7 +154,7 @@ std::shared_ptr<const Environment> environment_at(const Scene& scene, double sec
     environment->scale = vec3(source.intensity.at(seconds) * std::exp2(source.exposure.at(seconds)));
     environment->volume_scale = source.volume_scale.at(seconds);
     environment->surface_scale = source.surface_scale.at(seconds);
-    environment->shadows = source.shadows;
+    environment->shadows = source.shadows, environment->casters = links.x, environment->lit = links.y;
     if (!is_finite(environment->mean()))
         refuse(scene.file.string(), "light " + source.name + ": it is brighter than numbers can be");
     const bool shines =

@@ -27,6 +27,7 @@ struct Environment {
     vec3 scale{1};     // multiplies the map
     float volume_scale = 1, surface_scale = 1;
     bool shadows = true;
+    int casters = -1, lit = -1; // as those of a Light
     std::shared_ptr<const DirectionTable> table;
 
     vec3 mean() const { return table->mean * map.intensity * scale; }
@@ -35,8 +36,10 @@ struct Environment {
 // Null where the map is black. What the map's table was made for before (may be null) is used again.
 std::shared_ptr<const Environment> make_environment(BackgroundNow map, const Environment* previous = nullptr);
 
-// The scene's at a moment; null where there is none or it is black. Throws Error (refused) for light beyond floats.
-std::shared_ptr<const Environment> environment_at(const Scene& scene, double seconds, const Environment* previous);
+// The scene's at a moment, with its sets of casters (x) and of instances that it lights (y); null where there is none
+// or it is black. Throws Error (refused) for light beyond floats.
+std::shared_ptr<const Environment> environment_at(const Scene& scene, double seconds, ivec2 links,
+                                                  const Environment* previous);
 
 vec3 environment_radiance(const Environment& environment, vec3 direction);
 

@@ -27,7 +27,7 @@ void shine(const Snapshot& snapshot, std::span<const SurfacePoint> points, const
         if (max_component(sky.light[i]) > 0)
             rays.set(i, {off_surface(points[i].position, points[i].face_normal, sky.direction[i]), sky.direction[i],
                          infinity});
-    if (snapshot.environment->shadows && snapshot.occluders) snapshot.occluders->transmission(rays, shares);
+    if (const auto& casters = shadow_casters(*snapshot.environment, snapshot)) casters->transmission(rays, shares);
     for (size_t i = 0; i < points.size(); ++i) {
         if (!rays.active[i] || !(shares[i] > 0)) continue;
         double depth = 0;
@@ -48,11 +48,13 @@ void add_environment(const Snapshot& snapshot, std::span<const SurfacePoint> poi
     SkyDirections by_light, by_surface;
     for (size_t k = 0; k < count; ++k) {
         for (size_t i = 0; i < points.size(); ++i) {
+            by_light.light[i] = by_surface.light[i] = vec3(0);
+            if (!is_lit(environment, snapshot, points[i].instance)) continue;
             const vec2 pair = u[i * count + k];
             const EnvironmentSample sample = sample_environment(environment, pair);
             by_light.direction[i] = sample.direction;
-            by_light.light[i] =
-                sample.density > 0 ? weighted(points[i], sample.direction, sample.radiance, sample.density) : vec3(0);
+            if (sample.density > 0)
+                by_light.light[i] = weighted(points[i], sample.direction, sample.radiance, sample.density);
             by_surface.direction[i] = cosine_direction(points[i].normal, glm::fract(pair + vec2(0.618034f, 0.754878f)));
             by_surface.light[i] =
                 weighted(points[i], by_surface.direction[i], environment_radiance(environment, by_surface.direction[i]),

@@ -2,6 +2,7 @@
 
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "trace/lights/environment.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 
@@ -10,9 +11,8 @@
 namespace tyndall {
 namespace {
 // The instances of a link that are left when those without shadows are taken away; empty = all.
-std::vector<bool> casters_of(const Scene& scene, const LightSource& light, bool all_cast) {
-    if (all_cast) return light.casters;
-    std::vector<bool> casters = light.casters;
+std::vector<bool> without_shadowless(const Scene& scene, std::vector<bool> casters, bool all_cast) {
+    if (all_cast) return casters;
     if (casters.empty()) casters.assign(scene.instances.size(), true);
     for (size_t i = 0; i < casters.size(); ++i)
         if (!scene.instances[i].casts_shadows) casters[i] = false;
@@ -47,31 +47,47 @@ std::shared_ptr<const Occluders> surfaces_of(const Scene& scene, double seconds,
 
 LightLinks light_links(const Scene& scene, double seconds, const Snapshot* previous) {
     const bool all_cast = std::ranges::all_of(scene.instances, &Instance::casts_shadows);
-    const auto linked = [](const LightSource& light) { return !light.lit.empty() || !light.casters.empty(); };
+    const auto linked = [](const auto& light) { return !light.lit.empty() || !light.casters.empty(); };
     LightLinks links;
-    if (all_cast && !std::ranges::any_of(scene.lights, linked)) return links;
-    for (const LightSource& light : scene.lights) {
-        ivec2 of_light;
-        const std::vector<bool> casters = casters_of(scene, light, all_cast);
-        of_light.x = number_of(
+    const auto sets_of = [&](const auto& light) {
+        const std::vector<bool> casters = without_shadowless(scene, light.casters, all_cast);
+        const int shadowed = number_of(
             casters, links.casters, [&](const CasterSet& set) { return set.instances == casters; },
             [&] {
                 links.casters.push_back({casters, surfaces_of(scene, seconds, casters, previous)});
             });
-        of_light.y = number_of(
+        const int lit = number_of(
             light.lit, links.lit, [&](const std::vector<bool>& set) { return set == light.lit; },
             [&] { links.lit.push_back(light.lit); });
-        links.of_lights.push_back(of_light);
-    }
+        return ivec2(shadowed, lit);
+    };
+    if (!all_cast || std::ranges::any_of(scene.lights, linked))
+        for (const LightSource& light : scene.lights) links.of_lights.push_back(sets_of(light));
+    if (scene.environment && (!all_cast || linked(*scene.environment)))
+        links.of_environment = sets_of(*scene.environment);
     return links;
 }
 
-const std::shared_ptr<const Occluders>& shadow_casters(const Light& light, const Snapshot& snapshot) {
+namespace {
+const std::shared_ptr<const Occluders>& surfaces_in(int set, bool shadows, const Snapshot& snapshot) {
     static const std::shared_ptr<const Occluders> none;
-    if (!light.shadows) return none;
+    if (!shadows) return none;
     const std::shared_ptr<const Occluders>& surfaces =
-        light.casters < 0 ? snapshot.occluders : snapshot.casters[static_cast<size_t>(light.casters)].occluders;
+        set < 0 ? snapshot.occluders : snapshot.casters[static_cast<size_t>(set)].occluders;
     return surfaces && !surfaces->empty() ? surfaces : none;
+}
+
+bool is_in(int set, const Snapshot& snapshot, int instance) {
+    return set < 0 || instance < 0 || snapshot.lit[static_cast<size_t>(set)][static_cast<size_t>(instance)];
+}
+}
+
+const std::shared_ptr<const Occluders>& shadow_casters(const Light& light, const Snapshot& snapshot) {
+    return surfaces_in(light.casters, light.shadows, snapshot);
+}
+
+const std::shared_ptr<const Occluders>& shadow_casters(const Environment& environment, const Snapshot& snapshot) {
+    return surfaces_in(environment.casters, environment.shadows, snapshot);
 }
 
 bool shadows_light(const Light& light, const Snapshot& snapshot, int instance) {
@@ -79,8 +95,10 @@ bool shadows_light(const Light& light, const Snapshot& snapshot, int instance) {
     return snapshot.casters[static_cast<size_t>(light.casters)].instances[static_cast<size_t>(instance)];
 }
 
-bool is_lit(const Light& light, const Snapshot& snapshot, int instance) {
-    return light.lit < 0 || instance < 0 || snapshot.lit[static_cast<size_t>(light.lit)][static_cast<size_t>(instance)];
+bool is_lit(const Light& light, const Snapshot& snapshot, int instance) { return is_in(light.lit, snapshot, instance); }
+
+bool is_lit(const Environment& environment, const Snapshot& snapshot, int instance) {
+    return is_in(environment.lit, snapshot, instance);
 }
 
 bool has_alpha_shadows(const Snapshot& snapshot) {

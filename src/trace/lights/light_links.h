@@ -15,6 +15,7 @@ struct LightLinks {
     std::vector<CasterSet> casters;
     std::vector<std::vector<bool>> lit;
     std::vector<ivec2> of_lights;
+    ivec2 of_environment{-1};
 };
 
 // Shares the surfaces that did not move with `previous`. Throws Error.
