@@ -29,27 +29,43 @@ bool is_before(const AreaShape& shape, vec3 point) {
     return shape.two_sided ? height != 0 : height > 0;
 }
 
+constexpr double small = 1e-6; // steradians, below which doubles do not resolve the angles of a rectangle
+constexpr float near = 3;      // radii of a disc within which the square around it is sampled
+
+bool is_near_disc(const AreaShape& shape, vec3 point) {
+    return shape.kind == LightKind::disc && glm::distance(point, shape.center) <= near * shape.half.x;
+}
+
+SphericalRectangle seen_from(const AreaShape& shape, vec3 point) {
+    return {shape.center, shape.right, shape.up, glm::dvec2(shape.half), point};
+}
+
+double ball_steradians(const AreaShape& shape, vec3 point) {
+    const double distance = glm::distance(dvec3(point), dvec3(shape.center)), sine = shape.half.x / distance;
+    return 2 * double{pi} * sine * sine / (1 + std::sqrt(std::max(0.0, 1 - sine * sine)));
+}
+
 AreaSample sample_ball(const AreaShape& shape, vec3 point, vec2 u) {
     Light ball;
     ball.position = shape.center, ball.radius = shape.half.x;
     const Ray ray = ray_to_light(ball, point, u);
-    const double distance = glm::distance(dvec3(point), dvec3(shape.center)), sine = shape.half.x / distance;
-    const double one_minus_cosine = sine * sine / (1 + std::sqrt(std::max(0.0, 1 - sine * sine)));
-    return {ray.direction, ray.t_max, static_cast<float>(2 * double{pi} * one_minus_cosine)};
+    return {ray.direction, ray.t_max, static_cast<float>(ball_steradians(shape, point))};
 }
 
-// To a point of the face whose points are picked evenly.
+// Where points of the face are picked evenly.
+float steradians_by_area(const AreaShape& shape, vec3 direction, float distance) {
+    return face_area(shape) * std::abs(glm::dot(direction, shape.normal)) / (distance * distance);
+}
+
 AreaSample towards(const AreaShape& shape, vec3 point, vec2 place) {
     const vec3 offset = shape.center + place.x * shape.right + place.y * shape.up - point;
-    const float squared = glm::dot(offset, offset), distance = std::sqrt(squared);
-    const vec3 direction = offset / distance;
-    return {direction, distance, face_area(shape) * std::abs(glm::dot(direction, shape.normal)) / squared};
+    const float distance = glm::length(offset);
+    return {offset / distance, distance, steradians_by_area(shape, offset / distance, distance)};
 }
 
 // To a point of the face, or of the square around a disc.
 AreaSample sample_rectangle(const AreaShape& shape, vec3 point, vec2 u) {
-    constexpr double small = 1e-6; // steradians, below which doubles do not resolve the angles
-    const SphericalRectangle seen(shape.center, shape.right, shape.up, glm::dvec2(shape.half), point);
+    const SphericalRectangle seen = seen_from(shape, point);
     const glm::dvec2 place =
         seen.steradians > small ? seen.place(u) : (2.0 * glm::dvec2(u) - 1.0) * glm::dvec2(shape.half);
     AreaSample sample = towards(shape, point, vec2(place));
@@ -58,9 +74,7 @@ AreaSample sample_rectangle(const AreaShape& shape, vec3 point, vec2 u) {
 }
 
 AreaSample sample_disc(const AreaShape& shape, vec3 point, vec2 u) {
-    constexpr float near = 3; // radii
-    const vec3 offset = point - shape.center;
-    if (glm::length(offset) > near * shape.half.x) {
+    if (!is_near_disc(shape, point)) {
         const float radius = shape.half.x * std::sqrt(u.x), turn = 2 * pi * u.y;
         return towards(shape, point, radius * vec2(std::cos(turn), std::sin(turn)));
     }
@@ -155,6 +169,13 @@ AreaSample sample_area(const AreaShape& shape, vec3 point, vec2 u) {
     if (!is_before(shape, point)) return {};
     if (is_ball(shape)) return sample_ball(shape, point, u);
     return shape.kind == LightKind::disc ? sample_disc(shape, point, u) : sample_rectangle(shape, point, u);
+}
+
+float area_steradians(const AreaShape& shape, vec3 point, vec3 direction, float distance) {
+    if (is_ball(shape)) return static_cast<float>(ball_steradians(shape, point));
+    if (shape.kind == LightKind::rectangle || is_near_disc(shape, point))
+        if (const double seen = seen_from(shape, point).steradians; seen > small) return static_cast<float>(seen);
+    return steradians_by_area(shape, direction, distance);
 }
 
 float area_hit(const AreaShape& shape, const Ray& ray) {

@@ -43,6 +43,10 @@ struct AreaSample {
 // from nearby by the square around them, which keeps the sample bounded.
 AreaSample sample_area(const AreaShape& shape, vec3 point, vec2 u);
 
+// One over the chance per steradian with which sample_area() picks a direction in which the face is seen, at a
+// distance.
+float area_steradians(const AreaShape& shape, vec3 point, vec3 direction, float distance);
+
 // Metres to where a ray meets the glowing side; infinite where it does not.
 float area_hit(const AreaShape& shape, const Ray& ray);
 

@@ -113,6 +113,17 @@ TEST(FaceLight, FogScattersOnceAsByQuadrature) {
             }
 }
 
+// Directions are then picked by the phase function as well, near and far from discs.
+TEST(FaceLight, NarrowPhaseFunctionsFindTheFace) {
+    for (Light light : some_faces()) {
+        const Snapshot snapshot = snapshot_of({homogeneous_medium(0.5f, wide_box, forward_phase(0.9f))}, {light});
+        const Ray past = light.area->two_sided ? Ray{{-1, 0.5f, -0.6f}, glm::normalize(vec3(1, 0.1f, 0.5f)), 0.9f}
+                                               : Ray{{0, -2, 0.1f}, glm::normalize(vec3(0.1f, 1, 0)), 2.6f};
+        expect_near(marched_light(snapshot, past, 1 << 11), light_by_quadrature(light, forward_phase(0.9f), 0.5, past),
+                    0.005, "march");
+    }
+}
+
 TEST(FaceLight, MarchIsAsPathsOfOneOrder) {
     const Medium grid = medium_of(unit_volume(16, [](vec3 p) { return 0.2f + p.x * p.y; }), 3);
     Medium colored = homogeneous_medium(0.5f, {vec3(-1), vec3(2)}, forward_phase(0.8f), vec3(0.9f, 0.5f, 0.2f));

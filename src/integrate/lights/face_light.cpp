@@ -1,6 +1,6 @@
 // Light of rectangles, discs and balls that fog scatters once towards the eye. Distances are picked both evenly in the
-// angle around the light and in proportion to what would be seen from there, which share it (balance heuristic); points
-// of the face by its solid angle.
+// angle around the light and in proportion to what would be seen from there, and from there directions both by the
+// solid angle of the face and by the phase function. They share it (balance heuristic).
 #include "integrate/lights/path_lights.h"
 
 #include "scene/area_shape.h"
@@ -12,7 +12,7 @@
 
 namespace tyndall {
 namespace {
-enum Use : uint32_t { use_distance = 0x7fac, use_point = 0x7fad };
+enum Use : uint32_t { use_distance = 0x7fac, use_point, use_phase, use_medium };
 
 constexpr int pairs_for_a_point = 2; // of distances, one by angle and one by fog
 
@@ -22,24 +22,49 @@ struct Distances {
     AngleDistances angles;
 };
 
-// A way from a distance of the ray to a point of the light, one of `count`.
-void append_path(const ScatteringFog& fog, const Light& light, const Ray& ray, const Distances& distances, double t,
-                 size_t piece, double count, vec2 u, size_t number, std::vector<ScatterPath>& paths) {
+// Whether the fog at a point scatters more narrowly than the face is wide from there: only then is it worth looking for
+// it by the phase function.
+bool is_wide(const ScatteringFog& fog, const FogThere& there, const Light& light) {
+    const vec3 offset = there.point - light.position;
+    float peak = 0;
+    for (size_t m = 0; m < fog.peaks.size(); ++m) peak += there.shares[m] * fog.peaks[m];
+    return peak * face_area(*light.area) > glm::dot(offset, offset);
+}
+
+// The numbers that pick directions.
+struct DirectionNumbers {
+    vec2 face, phase;
+    float medium = 0;
+};
+
+// Two ways to the light from a distance of the ray, one of `count`.
+void append_paths(const ScatteringFog& fog, const Light& light, const Ray& ray, const Distances& distances, double t,
+                  size_t piece, double count, const DirectionNumbers& u, size_t number,
+                  std::vector<ScatterPath>& paths) {
     static thread_local FogThere there;
     const double extinction = look_at_fog(distances.fog.pieces, piece, ray, t, there);
     if (!(extinction > 0)) return;
     const double passing = distances.fog.passing(piece, t);
     const double density = count * (distances.angles.density(t) + distances.fog.density(extinction, passing));
-    const AreaSample sample = sample_area(*light.area, there.point, u);
-    if (!(density > 0) || !(sample.steradians > 0)) return;
-    const double weight =
-        extinction * passing / density * (sample.steradians * shown_share(fog, there.point) * light.volume_scale);
-    const vec3 share = scattered(fog.media, there, sample.direction).first;
-    const vec3 picture = face_picture(*light.area, there.point + sample.distance * sample.direction);
-    const ScatterPath path{number,
-                           {there.point, sample.direction, sample.distance * 0.9999f},
-                           share * radiance_of(light) * static_cast<float>(weight) * picture};
-    if (max_component(path.light) > 0) paths.push_back(path);
+    if (!(density > 0)) return;
+    const double weight = extinction * passing / density * (shown_share(fog, there.point) * light.volume_scale);
+    const bool wide = is_wide(fog, there, light);
+    const auto append = [&](vec3 direction, float distance, float steradians) {
+        const auto [share, by_phase] = scattered(fog.media, there, direction);
+        const vec3 picture = face_picture(*light.area, there.point + distance * direction);
+        const vec3 arriving =
+            share * radiance_of(light) * picture *
+            static_cast<float>(weight * steradians / (1 + (wide ? double{steradians} * by_phase : 0)));
+        if (max_component(arriving) > 0)
+            paths.push_back({number, {there.point, direction, distance * 0.9999f}, arriving});
+    };
+    const AreaSample sample = sample_area(*light.area, there.point, u.face);
+    if (sample.steradians > 0) append(sample.direction, sample.distance, sample.steradians);
+    if (!wide) return;
+    const vec3 direction = direction_by_phase(fog.media, there, u.medium, u.phase);
+    const float distance = area_hit(*light.area, {there.point, direction, infinity});
+    if (distance < infinity)
+        append(direction, distance, area_steradians(*light.area, there.point, direction, distance));
 }
 
 void append_ray(const ScatteringFog& fog, const Light& light, size_t number, const RayBatch& batch, size_t i,
@@ -52,11 +77,12 @@ void append_ray(const ScatteringFog& fog, const Light& light, size_t number, con
                               angle_distances(ray, pieces, dvec3(light.position), double{capped_radius(light)}, reach)};
     if (distances.angles.empty()) return;
     const auto pairs = static_cast<uint32_t>(fog.points * pairs_for_a_point);
-    const auto use = static_cast<uint32_t>(2 * number) * 0x9e37u;
+    const auto use = static_cast<uint32_t>(4 * number) * 0x9e37u;
     for (uint32_t k = 0; k < pairs; ++k) {
         const auto append = [&](double t, size_t piece, uint32_t point) {
-            append_path(fog, light, ray, distances, t, piece, pairs,
-                        point_numbers(batch, i, point, 2 * pairs, use_point + use), i, paths);
+            const auto numbers = [&](Use what) { return point_numbers(batch, i, point, 2 * pairs, what + use); };
+            append_paths(fog, light, ray, distances, t, piece, pairs,
+                         {numbers(use_point), numbers(use_phase), numbers(use_medium).x}, i, paths);
         };
         const vec2 u = point_numbers(batch, i, k, pairs, use_distance + use);
         const double by_angle = distances.angles.angles.at(u.x).t;

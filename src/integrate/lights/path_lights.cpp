@@ -11,9 +11,13 @@ namespace tyndall {
 std::shared_ptr<const ScatteringFog> scattering_fog(const Snapshot& snapshot, const StyleSettings& style,
                                                     const TermSettings& terms, const Camera& camera,
                                                     float min_transmittance) {
-    auto fog = std::make_shared<ScatteringFog>(ScatteringFog{{}, style, camera});
-    for (const Medium& medium : snapshot.media)
-        if (!only_emits(medium.optics)) fog->media.push_back(medium);
+    auto fog = std::make_shared<ScatteringFog>(ScatteringFog{{}, {}, style, camera});
+    for (const Medium& medium : snapshot.media) {
+        if (only_emits(medium.optics)) continue;
+        fog->media.push_back(medium);
+        const Phase& phase = medium.optics.phase;
+        fog->peaks.push_back(std::max(phase_value(phase, 1.0f), phase_value(phase, -1.0f)));
+    }
     fog->light_depth = terms.light == LightTransmittance::off ? 0 : style.light_depth;
     fog->min_transmittance = min_transmittance, fog->points = terms.light_points;
     return fog;

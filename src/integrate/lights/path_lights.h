@@ -18,6 +18,7 @@ class Occluders;
 
 struct ScatteringFog {
     std::vector<Medium> media;
+    std::vector<float> peaks; // the largest value of each one's phase function, straight on or back, 1/sr
     StyleSettings style;
     Camera camera;
     float light_depth = 1;       // factor on the optical depth that light crosses on its way to the fog
@@ -58,7 +59,7 @@ void append_mesh_light(const Snapshot& snapshot, std::shared_ptr<const Scatterin
 void append_fire_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
                        std::vector<PathLight>& lights);
 
-// Takes the lights with a face out of the snapshot: four ways to each.
+// Takes the lights with a face out of the snapshot: from four places, two ways each.
 void take_faces(Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
                 std::vector<PathLight>& lights);
 }
