@@ -15,10 +15,12 @@ namespace {
 constexpr int looks = 5;          // moments at which places are compared
 constexpr float spacing = 0.75f;  // pixels between neighbouring moments: thin lines ripple by 6.4 %
 constexpr int fewest_moments = 4; // of what changes at all
-constexpr double gibibyte = 1 << 30, max_triangle_bytes = gibibyte, bytes_per_triangle = 200;
-// Measured: 8 MiB of light grids in march, 33 of beams in froxel.
-constexpr double max_light_bytes = 4 * gibibyte, bytes_per_light = 32 << 20;
-constexpr double max_picture_bytes = 2 * gibibyte, bytes_per_pixel = 16; // of froxels
+
+// What a moment has of its own, measured on the concert. Of a light that changes: its grid in fog of voxels, its
+// shadows, and what a mode that keeps pictures has of these.
+constexpr double max_bytes = 8.0 * (1 << 30), bytes_per_triangle = 200, mebibyte = 1 << 20;
+constexpr double bytes_of_grid = 8 * mebibyte, bytes_of_shadows = 4 * mebibyte, bytes_of_beams = 16 * mebibyte;
+constexpr double bytes_per_pixel = 16, bytes_per_beam_pixel = 17;
 
 using Points = std::vector<vec3>;
 
@@ -152,29 +154,24 @@ bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter) 
 }
 
 namespace {
-// The largest power of two that does not pass a number, from `least` on.
-int within(double most, int least) {
-    return static_cast<int>(
-        std::bit_floor(static_cast<unsigned>(std::clamp(most, double(least), double(max_usual_moments)))));
-}
-
-// By what all moments take together; `everything`: whether what is kept of lights is made anew at each.
-int affordable_by_lights(const Scene& scene, bool everything) {
-    const auto has_voxels = [](const MediumSource& medium) {
-        return medium.kind == MediumKind::noise || medium.kind == MediumKind::vdb;
-    };
-    if (std::ranges::none_of(scene.media, has_voxels)) return max_usual_moments;
-    double lights = 0;
-    for (const LightSource& light : scene.lights) lights += everything || changes(scene, light);
-    return within(max_light_bytes / std::max(lights * bytes_per_light, 1.0), max_costly_moments);
-}
-
-int affordable_by_surfaces(const Scene& scene) {
-    double triangles = 0;
+double triangles_that_move(const Scene& scene) {
+    size_t triangles = 0;
     for (const Instance& instance : scene.instances)
         if (instance.mesh >= 0 && is_moving(scene, instance.node))
-            triangles += static_cast<double>(scene.meshes[static_cast<size_t>(instance.mesh)].triangles.size());
-    return within(max_triangle_bytes / std::max(triangles * bytes_per_triangle, 1.0), 1);
+            triangles += scene.meshes[static_cast<size_t>(instance.mesh)].triangles.size();
+    return static_cast<double>(triangles);
+}
+
+// `everything`: whether what is kept of lights is made anew at each moment.
+double bytes_of_moment(const Scene& scene, double pixels, bool everything, bool keeps_pictures) {
+    const bool voxels = std::ranges::any_of(scene.media, [](const MediumSource& medium) {
+        return medium.kind == MediumKind::noise || medium.kind == MediumKind::vdb;
+    });
+    double of_light = bytes_of_shadows + (voxels ? bytes_of_grid : 0), bytes = 0;
+    if (keeps_pictures) of_light += bytes_of_beams + bytes_per_beam_pixel * pixels, bytes += bytes_per_pixel * pixels;
+    for (const LightSource& light : scene.lights)
+        if (everything || changes(scene, light)) bytes += of_light;
+    return bytes + bytes_per_triangle * triangles_that_move(scene);
 }
 }
 
@@ -183,15 +180,14 @@ int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const S
     if (!changes_while_open(scene, camera, shutter)) return 1;
     float wanted = motion_on_picture(scene, camera, size, frame, shutter) / spacing;
     if (std::ranges::any_of(scene.media, [](const MediumSource& medium) { return medium.velocity.has_value(); }))
-        wanted = std::max(wanted, float(max_costly_moments));
+        wanted = std::max(wanted, float(moments_of_velocities));
     const float most = static_cast<float>(max_usual_moments);
     const int count = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::min(wanted, most) + 0.999f)));
     const bool everything = changes(scene, scene.cameras[static_cast<size_t>(camera)]) ||
                             std::ranges::any_of(scene.media, [](const auto& medium) { return changes(medium); });
-    const double pixels = static_cast<double>(size.x) * size.y;
-    const int by_pixels =
-        keeps_pictures ? within(max_picture_bytes / (pixels * bytes_per_pixel), max_costly_moments) : max_usual_moments;
-    return std::min({finer * std::clamp(count, fewest_moments, max_usual_moments), max_usual_moments,
-                     affordable_by_surfaces(scene), affordable_by_lights(scene, everything), by_pixels});
+    const double bytes = bytes_of_moment(scene, static_cast<double>(size.x) * size.y, everything, keeps_pictures);
+    const double affordable = std::clamp(max_bytes / std::max(bytes, 1.0), double(fewest_moments), double(most));
+    return std::min(finer * std::max(count, fewest_moments),
+                    static_cast<int>(std::bit_floor(static_cast<unsigned>(affordable))));
 }
 }

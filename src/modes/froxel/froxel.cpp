@@ -51,9 +51,11 @@ FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings&
     std::vector<const Medium*> bricks;
     for (const Medium& medium : scene.snapshot.media)
         if (medium.density.kind == DensityKind::bricks) bricks.push_back(&medium);
+    // Surfaces need all of the grids; without any, columns are filled where froxels ask for them.
+    const bool filled = scene.snapshot.occluders && !scene.snapshot.occluders->empty();
     for (const Light& light : scene.snapshot.lights) {
         scene.depths.push_back(
-            make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view, false));
+            make_light_depth(scene.snapshot, light, terms.light, terms.light_resolution, &view, filled));
         LightDepth& depth = scene.depths.back();
         depth.scale = settings.style.light_depth;
         const bool on_demand = depth.method == LightTransmittance::grid && depth.grid.size.x > 0 && !depth.grid.depth;

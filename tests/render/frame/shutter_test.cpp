@@ -293,17 +293,22 @@ TEST(UsualMoments, ThinLinesShowAsOne) {
 
 TEST(UsualMoments, MemoryBoundsThem) {
     Moving moving;
-    put(moving, false);
+    put(moving, false); // a camera that moves: what is kept of lights is made anew
     const Shutter shutter = moving.scene.cameras[0].shutter;
-    EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(4000), 0, shutter), max_usual_moments);
-    EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(4000), 0, shutter, true), max_costly_moments);
-    moving.scene.lights.resize(1);
+    const auto count = [&](size_t lights, bool keeps_pictures, int finer = 1) {
+        moving.scene.lights.resize(lights);
+        return usual_moments(moving.scene, 0, ivec2(4000), 0, shutter, keeps_pictures, finer);
+    };
+    EXPECT_EQ(count(1, false), max_usual_moments);
+    EXPECT_EQ(count(1, true), 8); // 0.55 GB each
     MediumSource fog;
     fog.kind = MediumKind::vdb;
     moving.scene.media.push_back(fog);
-    EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(4000), 0, shutter), 128);
-    moving.scene.lights.resize(9);
-    EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(4000), 0, shutter), max_costly_moments);
+    EXPECT_EQ(count(1, false), max_usual_moments); // 12 MiB
+    EXPECT_EQ(count(3, false), 128);
+    EXPECT_EQ(count(24, false), 16);
+    EXPECT_EQ(count(24, false, 2), 16);
+    EXPECT_EQ(count(24, true), 4); // however much that is
 }
 
 TEST(UsualMoments, NothingThatMovesNeedsOne) {
