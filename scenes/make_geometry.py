@@ -418,7 +418,7 @@ if __name__ == "__main__":
     from campfire import campfire
     from concert import concert
     from forest import forest_morning
-    from matchbulb import explosion_ground, matchbulb
+    from pbrt_models import explosion_ground, matchbulb
 
     makers = {"window": window, "spotlight": spotlight, "pillars": pillars, "lantern": lantern, "campfire": campfire,
               "forest_morning": forest_morning, "concert": concert, "pbrt/matchbulb": matchbulb, "pbrt/ground": explosion_ground}
