@@ -91,7 +91,7 @@ FAULTS = [
     of_light("draine-by-henyey-greenstein", "src/volume/phase/lobe.cpp", "4 * std::numbers::pi * (1 + alpha * (1 + 2 * g * g) / 3);",
              "4 * std::numbers::pi;", r"volume\.(phase|lobe)"),
     of_light("gobo-a-texel-off", "src/scene/gobo.cpp", "at * texels + 0.5,", "at * texels + 1.5,", r"scene\.gobo"),
-    of_light("nanovdb-turned", "src/volume/vdb/nano_tree.cpp", "return {number >> 2 * bits, number >> bits & mask, number & mask};",
+    of_light("nanovdb-turned", "src/volume/vdb/nano/tree.cpp", "return {number >> 2 * bits, number >> bits & mask, number & mask};",
              "return {number & mask, number >> bits & mask, number >> 2 * bits};", r"volume\.nano"),
     of_light("fire-counted-twice-in-smoke", "src/modes/path/fog.cpp", "{place.line_density / chance,", "{1,",
              r"modes\.(grid_emission|fire_light)"),

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "volume/vdb/nano_file.h"
+#include "volume/vdb/nano/file.h"
 #include "volume/vdb/transform.h"
 
 #include <cstring>

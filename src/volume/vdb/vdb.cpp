@@ -8,8 +8,8 @@
 #include "volume/vdb/fog.h"
 #include "volume/vdb/head.h"
 #include "volume/vdb/memory.h"
-#include "volume/vdb/nano_file.h"
-#include "volume/vdb/nano_tree.h"
+#include "volume/vdb/nano/file.h"
+#include "volume/vdb/nano/tree.h"
 #include "volume/vdb/prewalk.h"
 
 #include <glm/gtc/matrix_transform.hpp>

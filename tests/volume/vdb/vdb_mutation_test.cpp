@@ -2,7 +2,7 @@
 // own.
 #include "support/corpus.h"
 #include "support/threads.h"
-#include "volume/vdb/nano_fixtures.h"
+#include "volume/vdb/nano/fixtures.h"
 #include "volume/vdb/vdb.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // NanoVDB files hold the same fog as the OpenVDB files they were made from, or are refused by name.
 #include "support/corpus.h"
-#include "volume/vdb/nano_fixtures.h"
+#include "volume/vdb/nano/fixtures.h"
 #include "volume/vdb/vdb.h"
 
 #include <glm/gtc/matrix_transform.hpp>

@@ -1,4 +1,4 @@
-#include "volume/vdb/nano_fixtures.h"
+#include "volume/vdb/nano/fixtures.h"
 
 #include "base/io/file.h"
 #include "support/scratch.h"

@@ -1,4 +1,4 @@
-#include "volume/vdb/nano_file.h"
+#include "volume/vdb/nano/file.h"
 
 #include "base/error.h"
 #include "base/text.h"

@@ -1,4 +1,4 @@
-#include "volume/vdb/nano_tree.h"
+#include "volume/vdb/nano/tree.h"
 
 #include "base/error.h"
 #include "base/parallel.h"
