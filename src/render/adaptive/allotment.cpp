@@ -1,4 +1,5 @@
 #include "render/adaptive/allotment.h"
+#include "render/frame/layers.h"
 #include "trace/view.h"
 
 #include <algorithm>
@@ -22,21 +23,24 @@ double square_of_mean(const Image<vec3>& image) {
 // Sums over the pixels of tiles.
 struct Tiles {
     ivec2 low{0}, size{0};
-    std::vector<double> variance, pixels, work;
+    std::vector<double> variance, squares, pixels, work; // squares: of the variances
 
     size_t index(ivec2 tile) const { return static_cast<size_t>(tile.y) * size.x + tile.x; }
 };
 
+ivec2 tile_count(const Layers& layers) {
+    return (layers.low + layers.size - 1) / tile_side - layers.low / tile_side + 1;
+}
+
 Tiles empty_tiles(const Layers& layers) {
-    Tiles tiles{
-        layers.low / tile_side, (layers.low + layers.size - 1) / tile_side - layers.low / tile_side + 1, {}, {}, {}};
+    Tiles tiles{layers.low / tile_side, tile_count(layers), {}, {}, {}, {}};
     tiles.variance.resize(static_cast<size_t>(tiles.size.x) * tiles.size.y, 0.0);
-    tiles.pixels = tiles.work = tiles.variance;
+    tiles.squares = tiles.pixels = tiles.work = tiles.variance;
     return tiles;
 }
 
-// Of the colour and the fog light, each as a share of its own squared mean: enough for both.
-Tiles relative_variances(const Layers& layers) {
+// Of one sample's colour and fog light, each as a share of its own squared mean: enough for both.
+Tiles relative_variances(const Layers& layers, const Image<float>& taken, double power) {
     const double color = square_of_mean(layers.color), fog = square_of_mean(layers.inscatter);
     Tiles tiles = empty_tiles(layers);
     for (int y = 0; y < layers.size.y; ++y)
@@ -44,7 +48,8 @@ Tiles relative_variances(const Layers& layers) {
             const size_t i = tiles.index((layers.low + ivec2(x, y)) / tile_side - tiles.low);
             const double a = color > 0 ? channel_mean(layers.variance.at(x, y)) / color : 0;
             const double b = fog > 0 ? channel_mean(layers.inscatter_variance.at(x, y)) / fog : 0;
-            tiles.variance[i] += std::max(a, b), tiles.pixels[i] += 1;
+            const double variance = std::max(a, b) * std::pow(double{taken.pixels[i]}, power);
+            tiles.variance[i] += variance, tiles.squares[i] += variance * variance, tiles.pixels[i] += 1;
             tiles.work[i] += layers.work.empty() ? 1 : layers.work.at(x, y);
         }
     return tiles;
@@ -77,25 +82,74 @@ std::vector<double> costs_of(const Tiles& tiles, double pixels) {
     return result;
 }
 
-float samples_at(double scale, double variance, double power, int least) {
-    return static_cast<float>(
-        std::clamp(scale * std::pow(variance, 1 / (1 + power)), 1.0 * least, 1.0 * max_tile_samples));
+// What a picture's error comes from.
+struct Sources {
+    std::vector<double> variances, costs, uneven; // of one sample of a pixel of each tile
+    std::vector<double> pixels;
+    double pixel_count = 0, power = 1;
+
+    double variance(size_t i, double samples) const { return variances[i] / std::pow(samples, power); }
+    double squares(size_t i, double samples) const { // of its pixels' variances, their sum
+        return pixels[i] * uneven[i] * std::pow(variance(i, samples), 2);
+    }
+};
+
+Sources sources_of(const Tiles& tiles, double power) {
+    Sources sources{cautious(tiles), {}, {}, tiles.pixels, 0, power};
+    for (const double count : tiles.pixels) sources.pixel_count += count;
+    sources.costs = costs_of(tiles, sources.pixel_count);
+    for (size_t i = 0; i < tiles.variance.size(); ++i)
+        sources.uneven.push_back(
+            tiles.variance[i] > 0 ? tiles.squares[i] * tiles.pixels[i] / std::pow(tiles.variance[i], 2) : 1);
+    return sources;
+}
+
+// Samples of each tile, up to a factor: the least cost of a bound. Where the error comes from few pixels, chance may
+// make it much larger than it is on the average: they take more than by their variances alone, until each counts for
+// what it adds to mean + z × deviation of the squared error.
+std::vector<double> shares_of_samples(const Sources& sources) {
+    constexpr double deviations = 2.576 * 1.41421; // of a sum of squares of normal numbers
+    std::vector<double> shares(sources.variances.size()), weights = sources.variances;
+    for (int pass = 0; pass < 12; ++pass) {
+        double squares = 0;
+        for (size_t i = 0; i < shares.size(); ++i) {
+            shares[i] = std::pow(weights[i] / std::max(sources.costs[i], 1e-6), 1 / (1 + sources.power));
+            if (shares[i] > 0) squares += sources.squares(i, shares[i]);
+        }
+        for (size_t i = 0; i < shares.size(); ++i)
+            if (shares[i] > 0)
+                weights[i] = sources.variances[i] *
+                             (1 + deviations * sources.uneven[i] * sources.variance(i, shares[i]) / std::sqrt(squares));
+    }
+    return shares;
+}
+
+// Units of a pixel of a tile, in a picture of so many times as many samples as allotted.
+double units_of(double scale, float samples, int unit) {
+    if (!(scale > 0)) return 0;
+    const double wanted = scale * samples / unit, step = wanted >= many_allotted ? more_batches : 1;
+    return std::clamp(std::ceil(wanted / step) * step, 1.0, 1.0 * max_tile_samples - more_batches);
 }
 }
 
 Allotment allot(const Layers& layers, double taken, const Enough& enough, double power, int least) {
-    const Tiles tiles = relative_variances(layers);
-    const std::vector<double> variances = cautious(tiles);
-    double pixels = 0;
-    for (const double count : tiles.pixels) pixels += count;
-    const std::vector<double> costs = costs_of(tiles, pixels);
+    return allot(layers, samples_alike(layers, taken), enough, power, least);
+}
+
+Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& enough, double power, int least) {
+    const Sources sources = sources_of(relative_variances(layers, taken, power), power);
+    const std::vector<double> shares = shares_of_samples(sources);
     const auto at = [&](double scale) {
-        Allotment result{tiles.low, Image<float>(tiles.size), 0, 0};
-        for (size_t i = 0; i < variances.size(); ++i) {
-            const float samples = samples_at(scale, variances[i], power, least);
-            result.samples.pixels[i] = samples, result.rays += tiles.pixels[i] * costs[i] * samples;
-            result.squared_error += tiles.pixels[i] / pixels * variances[i] * std::pow(taken / samples, power);
+        Allotment result{layers.low / tile_side, Image<float>(tile_count(layers))};
+        double sum = 0, squares = 0;
+        for (size_t i = 0; i < shares.size(); ++i) {
+            const double samples = std::clamp(scale * shares[i], 1.0 * least, 1.0 * max_tile_samples);
+            result.samples.pixels[i] = static_cast<float>(samples);
+            result.rays += sources.pixels[i] * sources.costs[i] * samples;
+            sum += sources.pixels[i] * sources.variance(i, samples), squares += sources.squares(i, samples);
         }
+        result.squared_error = sum / sources.pixel_count;
+        result.squared_bound = squares > 0 ? result.squared_error * largest_square(sum * sum / squares) : 0;
         return result;
     };
 
@@ -104,23 +158,29 @@ Allotment allot(const Layers& layers, double taken, const Enough& enough, double
     for (int i = 0; i < 40; ++i) {
         const double middle = (low + high) / 2;
         const Allotment tried = at(std::exp(middle));
-        (tried.squared_error > enough.squared_error && tried.rays < enough.rays ? low : high) = middle;
+        const bool good = tried.squared_error <= enough.squared_error && tried.squared_bound <= enough.squared_bound;
+        (!good && tried.rays < enough.rays ? low : high) = middle;
     }
     return at(std::exp(high));
 }
 
+Image<float> samples_alike(const Layers& layers, double samples) {
+    return Image<float>(tile_count(layers), static_cast<float>(samples));
+}
+
+Image<float> samples_in(const Allotment& allotment, double scale, int unit) {
+    Image<float> samples = allotment.samples;
+    for (float& value : samples.pixels) value = static_cast<float>(unit * units_of(scale, value, unit));
+    return samples;
+}
+
 AllottedPart part_of(const Allotment& allotment, double from, double to, int unit) {
-    const auto units = [&](double scale, float samples) {
-        if (!(scale > 0)) return 0.0;
-        const double wanted = scale * samples / unit, step = wanted >= many_allotted ? more_batches : 1;
-        return std::clamp(std::ceil(wanted / step) * step, 1.0, 1.0 * max_tile_samples - more_batches);
-    };
     auto factors = std::make_shared<TileFactors>();
     AllottedPart part{nullptr, {allotment.low, Image<float>(allotment.samples.size)}};
     factors->low = allotment.low, factors->factors = Image<uint16_t>(allotment.samples.size);
     for (size_t i = 0; i < allotment.samples.pixels.size(); ++i) {
         const float samples = allotment.samples.pixels[i];
-        const double all = units(to, samples), added = all - units(from, samples);
+        const double all = units_of(to, samples, unit), added = all - units_of(from, samples, unit);
         factors->factors.pixels[i] = static_cast<uint16_t>(added);
         part.shares.shares.pixels[i] = static_cast<float>(added / all);
     }

@@ -13,17 +13,26 @@ struct Allotment {
     Image<float> samples;     // of each pixel of a tile
     double rays = 0;          // of all pixels, counted in those of the mean cost
     double squared_error = 0; // to expect, as a share of the squared mean
+    double squared_bound = 0; // below which it is with a confidence of 99.5 %
 };
 
-// Least cost with no more error, or the best that so many rays of the mean cost give.
+// Least cost with no more error than both, or the best that so many rays of the mean cost give.
 struct Enough {
-    double squared_error = 0, rays = 0;
+    double squared_error = 0, rays = 0, squared_bound = infinity;
 };
 
-// Where variances of means fall with the number of samples to the `power`, samples go as variance^(1 / (1 + power))
-// (Neyman 1934 for power 1), `least` or more of each pixel. `layers` hold the variances of means of `taken` samples,
-// and the work of one.
+// Where variances of means fall with the number of samples to the `power`, samples go as (variance / cost)^(1 /
+// (1 + power)) (Neyman 1934 for power 1), more where few pixels make most of the error, `least` or more of each pixel.
+// `layers` hold the variances of means of `taken` samples, and the work of one.
 Allotment allot(const Layers& layers, double taken, const Enough& enough, double power, int least);
+
+// Likewise, of so many samples of a pixel of each tile.
+Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& enough, double power, int least);
+
+// Samples of a pixel of each tile: as many in all; or in a picture of `scale` times as many as allotted, in multiples
+// of `unit`.
+Image<float> samples_alike(const Layers& layers, double samples);
+Image<float> samples_in(const Allotment& allotment, double scale, int unit);
 
 // What a picture of `to` times as many samples as allotted adds to one of `from` times as many: in multiples of `unit`,
 // one at least, but none where `from` is above 0 and rounding up has given them already.

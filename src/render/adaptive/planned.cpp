@@ -121,8 +121,7 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
     // Noise falls fastest at first: half of the way as the choice says, half as 1 / n.
     const double power = choice ? (1 + std::clamp(choice->power, 1.0, 1.5)) / 2 : 1;
     const double pixels = static_cast<double>(layers.color.pixels.size());
-    const double sure = stats.noise->error > 0 ? stats.noise->settled / stats.noise->error : 1;
-    const Enough enough{std::pow(target / sure, 2) / 1.05, max_target_samples * pixels};
+    const Enough enough{infinity, max_target_samples * pixels, target * target / 1.05};
     planned.counts = counts_of(allot(layers, pilot_samples, enough, power, view.batches), view.batches);
     planned.samples = view.batches * mean_of(*planned.counts);
     planned.seconds = stats.render_seconds / pilot_samples * planned.samples;

@@ -35,7 +35,8 @@ double pixel_count(const View& view) {
 }
 
 // The rounds of one picture. First all pixels take equally many samples; where that shows that some need many more than
-// others, it is begun anew with as many as each needs. Work is counted in samples of all pixels; then in allotments.
+// others, it is begun anew with as many as each needs, and once more where that shows what was missed. Work is counted
+// in samples of all pixels; then in allotments.
 struct Rounds {
     const Mode& mode;
     View view; // as asked for; what spreads most is measured, not guessed from lamps and edges
@@ -55,6 +56,10 @@ struct Rounds {
     // Samples that are allotted at once.
     int unit() const { return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2; }
     double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
+
+    Image<float> samples_taken(const Layers& layers) const {
+        return allotment ? samples_in(*allotment, done, unit()) : samples_alike(layers, done);
+    }
 
     double noise_target() const { return choice ? tyndall::noise_target(*choice, goal.error) : goal.error; }
 
@@ -115,24 +120,37 @@ int first_round(Rounds& rounds) {
     return std::max(samples, rounds.fewest());
 }
 
-// After the first round: whether samples are better spread by what it showed. Then they are, from nothing.
-bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
-    if (rounds.allotment || rounds.freedom == 0 || !(stats.noise->error > 0) || !std::isfinite(stats.noise->bound))
-        return false;
-    const double pixels = pixel_count(rounds.view);
-    const double ray_seconds = rounds.work_seconds / pixels, power = rounds.power();
-    const double squared = stats.noise->error * stats.noise->error, sure = stats.noise->settled / stats.noise->error;
-    Enough enough{0, max_target_samples * pixels};
-    if (rounds.goal.error > 0) enough.squared_error = std::pow(rounds.noise_target() / sure, 2) / 1.05;
-    if (rounds.goal.seconds > 0) enough.rays = std::min(enough.rays, std::max(0.9 * rounds.left() / ray_seconds, 0.0));
-    const Allotment allotment = allot(layers, rounds.done, enough, power, rounds.unit());
+// Work that going on takes until the picture is as good as that of an allotment.
+double work_as_it_goes(const Rounds& rounds, const Allotment& allotment, const Noise& noise) {
+    // By the bound: where an allotment missed much of what spreads, few batches tell of it.
+    if (rounds.allotment && rounds.goal.error > 0)
+        return rounds.done * (std::pow(noise.bound / rounds.noise_target(), 2) - 1);
+    return rounds.done * (noise.error * noise.error / allotment.squared_error - 1);
+}
 
-    // As good with all pixels alike, without beginning anew: in rounds that know nothing of each other.
-    const double alike = rounds.done * (squared / allotment.squared_error - 1);
-    if (!(1.2 * allotment.rays < alike * pixels) || allotment.rays > 1.1 * enough.rays) return false;
+// Whether samples are better spread by what the rounds so far showed. Then they are, from nothing.
+bool begin_allotment(Rounds& rounds, const Layers& layers, FrameStats& stats) {
+    const Noise& noise = *stats.noise;
+    if (rounds.freedom == 0 || !(noise.error > 0) || !std::isfinite(noise.bound)) return false;
+    const double unit_rays = rounds.allotment ? rounds.allotment->rays : pixel_count(rounds.view);
+    const double ray_seconds = rounds.work_seconds / unit_rays;
+    Enough enough{0, max_target_samples * pixel_count(rounds.view)};
+    if (rounds.goal.error > 0)
+        enough.squared_error = infinity, enough.squared_bound = std::pow(rounds.noise_target(), 2) / 1.05;
+    if (rounds.goal.seconds > 0) enough.rays = std::min(enough.rays, std::max(0.9 * rounds.left() / ray_seconds, 0.0));
+    const Image<float> taken = rounds.samples_taken(layers);
+    const Allotment allotment = allot(layers, taken, enough, rounds.power(), rounds.unit());
+
+    // As good by going on, without beginning anew: in rounds that know nothing of each other.
+    const double as_it_goes = work_as_it_goes(rounds, allotment, noise) * unit_rays;
+    const double gain = rounds.allotment ? 2 : 1.2;
+    if (!(gain * allotment.rays < as_it_goes) || allotment.rays > 1.1 * enough.rays) return false;
     rounds.work_seconds = ray_seconds * allotment.rays;
     // Noise may fall faster than told from few samples: where many more are to come, some of them show it.
-    rounds.first_part = *std::ranges::max_element(allotment.samples.pixels) > 64 * rounds.done ? 0.4 : 1;
+    double growth = 0;
+    for (size_t i = 0; i < taken.pixels.size(); ++i)
+        growth = std::max(growth, double{allotment.samples.pixels[i]} / taken.pixels[i]);
+    rounds.first_part = rounds.allotment || growth > 16 ? 0.4 : 1;
     rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
     return true;
 }
@@ -223,15 +241,15 @@ double begin_with_scout(Rounds& rounds, Layers& result, FrameStats& stats) {
 }
 
 // What a goal is likely to take from here, when so much work comes next: an allotment may be enough after its first
-// part. Noise falls fastest at first: the power measured there holds for about half of the way, in logarithms, and the
-// rest falls as 1 / n.
+// part, or be begun anew. Noise falls fastest at first: the power measured there holds for about half of the way, in
+// logarithms, and the rest falls as 1 / n.
 double seconds_ahead(const Rounds& rounds, double next) {
     if (is_out_of_reach(*rounds.choice, rounds.goal.error)) return infinity;
     if (!(next > 0)) return rounds.check_seconds;
     const double first = rounds.choice->scout ? scout_samples : 1;
     const double samples = rounds.allotment ? rounds.allotment->rays / pixel_count(rounds.view) : rounds.expected;
     const double slower = std::pow(std::max(samples / first, 1.0), (rounds.power() - 1) / 2);
-    const double work = rounds.allotment ? (rounds.first_part + 1) / 2 : rounds.expected - rounds.done;
+    const double work = rounds.allotment ? 1 : rounds.expected - rounds.done;
     return slower * work * rounds.work_seconds + rounds.check_seconds;
 }
 }

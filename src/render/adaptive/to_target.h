@@ -15,7 +15,8 @@ void check_target(const Mode& mode, std::string_view option = "--target-error");
 // Renders rounds of samples, each with a seed of its own, until the bound of the error is at most goal.error, the next
 // round would end after goal.seconds, or pixels have max_target_samples on the average; stats.error() says how good it
 // is. First all pixels take equally many samples. Where that shows that a few need most of them, the picture is begun
-// anew with as many as each tile of 4×4 needs (render/adaptive/allotment.h), and stats.samples is their mean;
+// anew with as many as each tile of 4×4 needs (render/adaptive/allotment.h), again where that shows much that few
+// samples had missed, and stats.samples is their mean;
 // pixel.lamp_samples and pixel.edge_samples decide nothing. Noise is measured between batches: 64 in a round where
 // noise is the mode's only error or the view has batches, else two, and 4, 8 and 2 in the same cases once samples are
 // allotted; a picture of one sample per pixel is judged by the pixels measured beforehand. Modes with an error besides

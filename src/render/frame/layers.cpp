@@ -99,6 +99,11 @@ double largest_ratio(double above, double below) {
     return std::pow((product + root) / square, 3);
 }
 
+}
+
+double largest_square(double pixels) { return largest_ratio(pixels, certain); }
+
+namespace {
 // A picture's squared error adds up from those of its pixels, and so does the estimate of what it is on the average.
 // Each sum counts as that of as many squares of normal numbers as give it the same squared error (Satterthwaite 1946).
 Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, const Image<float>& squared_errors) {

@@ -103,6 +103,10 @@ struct TileShares {
 void blend_layers(Layers& layers, const Layers& other, float share);
 void blend_layers(Layers& layers, const Layers& other, const TileShares& shares);
 
+// Below which 99.5 % of the squared errors of a picture lie, over their mean, when they come from so many pixels of one
+// and the same variance.
+double largest_square(double pixels);
+
 // From the variances of the layers and how well they are known, with noise that is independent from pixel to pixel. A
 // layer that is black and free of noise has no error.
 Noise noise_of(const Layers& layers);
