@@ -314,13 +314,16 @@ void begin(const Choice& choice, Rounds& rounds, Rendering& rendering, FrameStat
     note_integrator(choice, stats);
 }
 
-// Tells what the goal is likely to take when `more` seconds come on top of those that have passed; stats keep what was
-// told first. What is far gets a limit.
+// Tells what the goal is likely to take when `more` seconds come on top of those that have passed: at first, and where
+// that turns out to be wrong early on. Stats keep the last of the first third. What is far gets a limit.
 void make_forecast(double more, Rounds& rounds, const FrameOptions& options, FrameStats& stats) {
-    const double seconds = rounds.goal.clock() - rounds.start + more;
-    if (stats.forecast_seconds == 0) stats.forecast_seconds = seconds;
+    constexpr double early = 1.0 / 3, wrong = 1.5;
+    const double passed = rounds.goal.clock() - rounds.start, seconds = passed + more, before = stats.forecast_seconds;
+    if (before > 0 && passed > early * seconds) return;
+    stats.forecast_seconds = seconds;
     if (rounds.goal.seconds == 0 && seconds > longest_seconds) rounds.goal.seconds = longest_seconds;
-    if (options.forecast) options.forecast(seconds);
+    const bool as_before = before > 0 && (seconds == before || (seconds < wrong * before && before < wrong * seconds));
+    if (options.forecast && !as_before) options.forecast(seconds);
 }
 
 // Renders rounds until noise is as small as the goal asks for, or time is up. `round` counts those of all tries.
@@ -359,7 +362,7 @@ void render_rounds(Rounds& rounds, const Rendering& rendering, double work, Laye
         if (judge(rounds, result, stats) || rays >= max_target_samples * pixels || rounds.freedom == 0) return;
         if (begin_allotment(rounds, result, stats)) rays = 0;
         work = next_round(rounds, stats);
-        if (work == 0 || rounds.goal.error == 0 || stats.forecast_seconds > 0) continue;
+        if (work == 0 || rounds.goal.error == 0) continue;
         make_forecast((rounds.expected - rounds.done) * rounds.work_seconds, rounds, rendering.options, stats);
         work = next_round(rounds, stats); // by the limit, where there is one now
     }

@@ -84,7 +84,7 @@ struct FrameStats {
     std::optional<OrdersError> orders;    // where light of several orders is part of a goal
     std::optional<Noise> moments_error;   // of motion blur by few moments, where it was measured
     double goal_seconds = 0;              // of a goal: all that its time counts
-    double forecast_seconds = 0;          // of it, made before most of it; 0 = none was made, infinite = out of reach
+    double forecast_seconds = 0;          // of it, made in its first third; 0 = none was made, infinite = out of reach
 
     std::optional<Noise> error() const; // noise and all that was measured besides
     bool is_noise_alone() const { return !integrator && !orders && !moments_error; }

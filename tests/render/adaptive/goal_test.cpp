@@ -68,10 +68,10 @@ struct Result {
     FrameStats stats;
 };
 
-Result to_goal(const Example& example, const Goal& goal) {
+Result to_goal(const Example& example, const Goal& goal, const FrameOptions& options = {}) {
     Result result;
-    result.layers =
-        render_to_target(find_mode("march"), example.view, example.snapshot, example.settings, goal, {}, result.stats);
+    result.layers = render_to_target(find_mode("march"), example.view, example.snapshot, example.settings, goal,
+                                     options, result.stats);
     return result;
 }
 
@@ -245,8 +245,8 @@ TEST(Goal, NoiseAloneIsForecastAfterTheFirstRound) {
     const FrameStats stats = counted(0.01, 0, options); // 3333 samples and more
     EXPECT_LE(stats.noise->bound, 0.01);
     ASSERT_EQ(forecasts.size(), 1u);
-    EXPECT_EQ(stats.forecast_seconds, forecasts[0]);
     EXPECT_NEAR(stats.goal_seconds / forecasts[0], 1, 0.3);
+    EXPECT_NEAR(stats.goal_seconds / stats.forecast_seconds, 1, 0.3);
 }
 
 TEST(Goal, WhatIsFarIsStoppedAfterTenMinutes) {
@@ -268,8 +268,13 @@ TEST(Goal, AFinerCandidateIsTakenWhereTheOneChosenIsFarFromTheError) {
     coarse.scout = nullptr, coarse.measured.prepared = nullptr;
     coarse.measured.integrator.value = coarse.measured.integrator.bound = 1;
     goal.choice = std::make_shared<Choice>(coarse);
-    const Result result = to_goal(example, goal);
-    EXPECT_EQ(result.stats.forecast_seconds, infinity);
+    std::vector<double> forecasts;
+    FrameOptions options;
+    options.forecast = [&](double seconds) { forecasts.push_back(seconds); };
+    const Result result = to_goal(example, goal, options);
+    ASSERT_GT(forecasts.size(), 1u) << "what is wrong early on is told anew";
+    EXPECT_EQ(forecasts[0], infinity);
+    EXPECT_LT(result.stats.forecast_seconds, infinity);
     EXPECT_NE(result.stats.integrator->candidate, coarse.candidate.name);
     EXPECT_LE(result.stats.error()->bound, goal.error);
 }
