@@ -48,7 +48,7 @@ FAULTS = [
     Fault("tiles-without-weights", ADAPTIVE + "tile_chances.cpp", "drawn.push_back({corner(i), chance, 1 / chance});",
           "drawn.push_back({corner(i), chance, 1});"),
     Fault("check-with-the-pilots-samples", ADAPTIVE + "goal.cpp", "chances(), salt,", "chances(), 0 * salt,"),
-    Fault("rounds-of-the-same-samples", ADAPTIVE + "to_target.cpp",
+    Fault("rounds-of-the-same-samples", ADAPTIVE + "target_rounds.h",
           "if (round > 0) result.seed = hash(view.seed, static_cast<uint32_t>(round));", ""),
     Fault("integrator-left-out", "src/render/frame/frame.cpp", "integrator ? integrator->error : none", "none"),
     Fault("orders-left-out", "src/render/frame/frame.cpp", "orders ? orders->pixels : none", "none"),
