@@ -54,9 +54,10 @@ int first_round(TargetRounds& rounds) {
 namespace {
 // Work that going on takes until the picture is as good as that of an allotment.
 double work_as_it_goes(const TargetRounds& rounds, const Allotment& allotment, const Noise& noise) {
-    // By the bound: where an allotment missed much of what spreads, few batches tell of it.
-    if (rounds.allotment && rounds.goal.error > 0)
-        return rounds.done * (std::pow(noise.bound / rounds.noise_target(), 2) - 1);
+    // By the bound, where the goal can be reached: what an allotment missed few batches tell of.
+    const double target = rounds.noise_target() * rounds.noise_target();
+    if (rounds.allotment && allotment.squared_bound <= target)
+        return rounds.done * (noise.bound * noise.bound / target - 1);
     return rounds.done * (noise.error * noise.error / allotment.squared_error - 1);
 }
 }

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <set>
 
 namespace tyndall::test {
@@ -150,8 +151,10 @@ TEST(Allotment, TilesOfManySamplesHaveMoreBatches) {
 
 // Grey noise in the upper left corner of four tiles, as prepare_random; a constant elsewhere.
 constexpr ivec2 size(64, 64);
+std::atomic<int64_t> corner_rays = 0;
 ScatterFunction prepare_noisy_corner(const View&, const Snapshot&, const Settings&, History*) {
     return [](const RayBatch& batch, std::span<Scatter> results) {
+        corner_rays += static_cast<int64_t>(batch.rays.size());
         for (size_t i = 0; i < results.size(); ++i) {
             const bool noisy = batch.positions[i].x < 8 && batch.positions[i].y < 8;
             results[i] = {vec3(noisy ? to_unit(batch.ids[i]) : 0.5f), 1, 1, 1};
@@ -224,6 +227,22 @@ TEST(Allotment, IsMadeAnewWhereTheFirstRoundMissedMost) {
         rays += static_cast<double>(result.stats.camera_rays) / 10;
     }
     EXPECT_LT(rays, 7 * least) << "ten times as many by the first round alone";
+}
+
+TEST(Allotment, IsNotMadeAnewForAGoalOutOfReach) {
+    static const Scene scene;
+    const auto error_after = [](double target, double rays, uint32_t seed) {
+        View view = plain_view(size, 4);
+        view.seed = seed;
+        FrameStats stats;
+        const Goal goal{target, rays, Quality::preview, [] { return static_cast<double>(corner_rays); }};
+        render_to_target(own_mode(prepare_noisy_corner), view, snapshot_of(scene), Settings{}, goal, {}, stats);
+        return stats.noise->error;
+    };
+    double with_goal = 0, without = 0;
+    for (uint32_t seed = 0; seed < 10; ++seed)
+        with_goal += error_after(1e-5, 4e6, seed), without += error_after(0, 4e6, seed);
+    EXPECT_LT(with_goal, 1.3 * without);
 }
 
 TEST(Allotment, SaysHowManySamplesThereAreOnTheAverage) {
