@@ -89,9 +89,8 @@ struct Sources {
     double pixel_count = 0, power = 1;
 
     double variance(size_t i, double samples) const { return variances[i] / std::pow(samples, power); }
-    double squares(size_t i, double samples) const { // of its pixels' variances, their sum
-        return pixels[i] * uneven[i] * std::pow(variance(i, samples), 2);
-    }
+    // Sum of the squared variances of a tile's pixels.
+    double squares(size_t i, double variance) const { return pixels[i] * uneven[i] * variance * variance; }
 };
 
 Sources sources_of(const Tiles& tiles, double power) {
@@ -108,13 +107,13 @@ Sources sources_of(const Tiles& tiles, double power) {
 // make it much larger than it is on the average: they take more than by their variances alone, until each counts for
 // what it adds to mean + z × deviation of the squared error.
 std::vector<double> shares_of_samples(const Sources& sources) {
-    constexpr double deviations = 2.576 * 1.41421; // of a sum of squares of normal numbers
+    constexpr double deviations = noise_deviations * 1.41421356; // a sum of squares of normal numbers varies by 2 Σ v²
     std::vector<double> shares(sources.variances.size()), weights = sources.variances;
     for (int pass = 0; pass < 12; ++pass) {
         double squares = 0;
         for (size_t i = 0; i < shares.size(); ++i) {
             shares[i] = std::pow(weights[i] / std::max(sources.costs[i], 1e-6), 1 / (1 + sources.power));
-            if (shares[i] > 0) squares += sources.squares(i, shares[i]);
+            if (shares[i] > 0) squares += sources.squares(i, sources.variance(i, shares[i]));
         }
         for (size_t i = 0; i < shares.size(); ++i)
             if (shares[i] > 0)
@@ -146,7 +145,8 @@ Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& e
             const double samples = std::clamp(scale * shares[i], 1.0 * least, 1.0 * max_tile_samples);
             result.samples.pixels[i] = static_cast<float>(samples);
             result.rays += sources.pixels[i] * sources.costs[i] * samples;
-            sum += sources.pixels[i] * sources.variance(i, samples), squares += sources.squares(i, samples);
+            const double variance = sources.variance(i, samples);
+            sum += sources.pixels[i] * variance, squares += sources.squares(i, variance);
         }
         result.squared_error = sum / sources.pixel_count;
         result.squared_bound = squares > 0 ? result.squared_error * largest_square(sum * sum / squares) : 0;

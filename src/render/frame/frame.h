@@ -54,11 +54,12 @@ Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snaps
 void prepare_files(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings);
 
 struct FrameOptions {
-    bool halves = false;                    // of the batches
-    History* history = nullptr;             // of the frames before; null = none is kept
-    std::atomic<bool>* cancel = nullptr;    // set from outside to stop early (throws Error)
-    std::function<void(double)> progress;   // 0..1, from any thread
-    std::function<void(double)> forecast{}; // of what a goal will take, seconds; where one is made, before long work
+    bool halves = false;                  // of the batches
+    History* history = nullptr;           // of the frames before; null = none is kept
+    std::atomic<bool>* cancel = nullptr;  // set from outside to stop early (throws Error)
+    std::function<void(double)> progress; // 0..1, from any thread
+    // Of what a goal will take, seconds: before long work, and again if that soon proves wrong.
+    std::function<void(double)> forecast{};
     // Already, with the same settings and a view that differs in samples and seed only.
     std::shared_ptr<const Prepared> prepared{};
 };

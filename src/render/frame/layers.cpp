@@ -79,8 +79,7 @@ void blend_layers(Layers& layers, const Layers& other, const TileShares& shares)
 }
 
 namespace {
-constexpr double confidence = 2.576; // standard deviations below which 99.5 % of a normal distribution lie
-constexpr double certain = 1e9;      // degrees of freedom
+constexpr double certain = 1e9; // degrees of freedom
 
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
 
@@ -93,7 +92,7 @@ double mean_of(const Image<vec3>& image) {
 // Below this share lie 99.5 % of the ratios of two independent χ², each over its degrees of freedom: Fisher's F after
 // Paulson (1942). Below three degrees of the divisor nothing is known but that it is a lot.
 double largest_ratio(double above, double below) {
-    const double a = 2 / (9 * below), b = 2 / (9 * above), z = confidence * confidence;
+    const double a = 2 / (9 * below), b = 2 / (9 * above), z = noise_deviations * noise_deviations;
     const double square = (1 - a) * (1 - a) - z * a, product = (1 - a) * (1 - b);
     const double root = std::sqrt(std::max(product * product - square * ((1 - b) * (1 - b) - z * b), 0.0));
     return std::pow((product + root) / square, 3);

@@ -103,8 +103,10 @@ struct TileShares {
 void blend_layers(Layers& layers, const Layers& other, float share);
 void blend_layers(Layers& layers, const Layers& other, const TileShares& shares);
 
-// Below which 99.5 % of the squared errors of a picture lie, over their mean, when they come from so many pixels of one
-// and the same variance.
+inline constexpr double noise_deviations = 2.576; // below which 99.5 % of a normal distribution lie
+
+// The squared error that 99.5 % of the pictures stay below, over its mean, where it comes from so many pixels of equal
+// variance.
 double largest_square(double pixels);
 
 // From the variances of the layers and how well they are known, with noise that is independent from pixel to pixel. A
