@@ -139,6 +139,19 @@ float view_angle(std::span<const Block> blocks, vec3 origin, vec3 axis) {
 // while the fog in it drifts and its bounds change a little from frame to frame.
 float stable_size(float cell, float unit) { return unit * std::exp2(0.25f * std::round(4 * std::log2(cell / unit))); }
 
+// The finest cells worth their memory, metres: depths hardly bend within a voxel.
+struct FinestCell {
+    float across = infinity, along = infinity;
+};
+FinestCell finest_cell(std::span<const Medium* const> media) {
+    float voxel = infinity;
+    for (const Medium* medium : media) {
+        const vec3 size = medium->density.bricks->voxel_size;
+        voxel = std::min({voxel, size.x, size.y, size.z});
+    }
+    return {0.5f * voxel, voxel};
+}
+
 // Where the volume's own coordinates begin: a place that does not move when bricks come and go.
 vec3 first_voxel(const BrickPool& pool) { return vec3(pool.index_to_world * vec4(-vec3(pool.low), 1)); }
 
@@ -176,33 +189,38 @@ void fit_sun(std::span<const Medium* const> media, std::span<const Block> blocks
     const Fit fit = tightest(media, light.direction, grid,
                              [&](const mat3& frame) { return fit_columns(blocks, frame, grid.position); });
     const vec3 extent = fit.high - fit.low;
-    set_size(fit, vec3(stable_size(std::max(extent.x, extent.y) / cells, voxel)), grid);
+    const FinestCell finest = finest_cell(media);
+    const float across = stable_size(std::max(std::max(extent.x, extent.y) / cells, finest.across), voxel);
+    set_size(fit, vec3(across, across, std::max(across, stable_size(finest.along, voxel))), grid);
 }
 
-// Distances along columns that spread from a local light: cells, `width` across at distance 1, are cubes two thirds of
-// the way out.
-void fit_distances(const Light& light, Fit fit, float cell, float width, float voxel, LightDepthGrid& grid) {
+// Where the columns of a local light begin, and the distance at which their cells are cubes: two thirds of the way
+// through the fog. 0 = there is none.
+float fit_distances(const Light& light, Fit& fit, LightDepthGrid& grid) {
     grid.position = light.position;
     grid.start = fit.low.z = std::max({fit.low.z, light.radius, 0.0f});
-    if (!(fit.high.z > fit.low.z)) return;
-    const float reference = fit.low.z + (fit.high.z - fit.low.z) * 0.667f;
-    set_size(fit, vec3(cell, cell, stable_size(width * reference, voxel)), grid);
+    return fit.high.z > fit.low.z ? fit.low.z + (fit.high.z - fit.low.z) * 0.667f : 0;
 }
 
 void fit_cone_grid(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light, vec3 axis,
                    float angle, float cells, float voxel, LightDepthGrid& grid) {
     grid.projection = LightProjection::perspective;
     const float tangent = std::tan(std::max(angle, 1e-3f));
-    const Fit fit = tightest(media, axis, grid,
-                             [&](const mat3& frame) { return fit_cone(blocks, frame, light.position, tangent); });
+    Fit fit = tightest(media, axis, grid,
+                       [&](const mat3& frame) { return fit_cone(blocks, frame, light.position, tangent); });
     if (fit.empty()) return;
-    const float width = stable_size(std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells, 1);
-    fit_distances(light, fit, width, width, voxel, grid);
+    const float distance = fit_distances(light, fit, grid);
+    if (!(distance > 0)) return;
+    const FinestCell finest = finest_cell(media);
+    const float wide = std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells;
+    const float width = stable_size(std::max(wide, finest.across / distance), 1);
+    set_size(fit, vec3(width, width, stable_size(std::max(width * distance, finest.along), voxel)), grid);
 }
 
 // All directions: the octahedron's square of side 2 holds a solid angle of 4π; two thirds of it lie across the fog. An
 // even number of cells, as the square folds about its middle.
-void fit_octahedron(std::span<const Block> blocks, const Light& light, float cells, float voxel, LightDepthGrid& grid) {
+void fit_octahedron(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light,
+                    float cells, float voxel, LightDepthGrid& grid) {
     grid.projection = LightProjection::all_around;
     Fit fit;
     fit.grow(0, -1, 1), fit.grow(1, -1, 1);
@@ -210,8 +228,12 @@ void fit_octahedron(std::span<const Block> blocks, const Light& light, float cel
         const float distance = glm::length(block.center - light.position);
         fit.grow(2, distance - block.radius, distance + block.radius);
     }
-    const float width = 1 / std::ceil(cells * (2 / 3.0f));
-    fit_distances(light, fit, width, width * std::sqrt(pi), voxel, grid);
+    const float distance = fit_distances(light, fit, grid);
+    if (!(distance > 0)) return;
+    const FinestCell finest = finest_cell(media);
+    const float length = distance * std::sqrt(pi); // metres on a side of 1
+    const float width = 1 / std::ceil(std::min(cells * (2 / 3.0f), length / finest.across));
+    set_size(fit, vec3(width, width, stable_size(std::max(width * length, finest.along), voxel)), grid);
 }
 }
 
@@ -235,7 +257,7 @@ LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& li
     if (spot || angle < widest_view)
         fit_cone_grid(media, blocks, light, axis, angle, cells, voxel, grid);
     else
-        fit_octahedron(blocks, light, cells, voxel, grid);
+        fit_octahedron(media, blocks, light, cells, voxel, grid);
     return grid;
 }
 }

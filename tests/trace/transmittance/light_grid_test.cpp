@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <tuple>
 
 namespace tyndall {
 namespace {
@@ -127,6 +128,31 @@ TEST(LightGrid, PointBesideTheFogIsAccurate) {
     light.position = vec3(-0.5f, 1.4f, 0.3f) * float(side);
     // The box is seen across 2·tan(view angle); its middle is 1.4 sides away.
     expect_accuracy(light, points_in_fog([](vec3) { return true; }), 1.6f * side, {0.006, 0.016, 0.045}, "aside");
+}
+
+// A beam a voxel wide at the fog asks for no more cells than voxels, however fine it may.
+TEST(LightGrid, NarrowBeamsNeedNoCellsFinerThanVoxels) {
+    Light light;
+    light.kind = LightKind::spot;
+    light.position = vec3(side / 2, 1.6f * side, side / 3);
+    light.direction = glm::normalize(vec3(side / 2) - light.position);
+    light.outer_cone = 0.02f;
+    const auto in_cone = [&](vec3 p) {
+        return dot(glm::normalize(p - light.position), light.direction) > std::cos(light.outer_cone);
+    };
+    expect_accuracy(light, points_in_fog(in_cone), 256, {0.004, 0.004, 0.004}, "beam");
+    const Medium* const fog[] = {&noise_fog()};
+    for (const auto& [angle, across, along] : {std::tuple{0.02f, 12, 200}, std::tuple{0.002f, 3, 200}}) {
+        light.outer_cone = angle;
+        const LightDepthGrid grid = fitted_grid(fog, light, 1024);
+        EXPECT_LE(std::max(grid.size.x, grid.size.y), across);
+        EXPECT_LE(grid.size.z, along);
+    }
+    Light lamp, sun;
+    lamp.position = vec3(side / 2), sun.kind = LightKind::sun;
+    EXPECT_LE(fitted_grid(fog, lamp, 1024).size.z, 2 * side);
+    EXPECT_LE(fitted_grid(fog, sun, 1024).size.z, 2 * side);
+    EXPECT_LE(fitted_grid(fog, sun, 1024).size.x, 3 * side);
 }
 
 // Fog whose bounds change a little keeps its corners: no shimmer from frame to frame.
