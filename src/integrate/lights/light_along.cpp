@@ -36,8 +36,8 @@ void set_cone(const Light& light, LightAlong& along) {
     along.cone_scale = 1 / std::max(inner - outer, 1e-6), along.cone_offset = -outer * along.cone_scale;
 }
 
-// The stretch a local light reaches at all; notes where its strength has kinks.
-Interval<double> reached(const Light& light, LightAlong& along, Interval<double> range) {
+// Notes where the strength of a local light has kinks.
+void note_kinks(const Light& light, LightAlong& along) {
     const auto note = [&](Interval<double> stretch) {
         if (!stretch.empty()) along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
     };
@@ -49,7 +49,6 @@ Interval<double> reached(const Light& light, LightAlong& along, Interval<double>
         note(inside_cone(light.position, glm::normalize(dvec3(light.direction)), std::acos(std::min(full, 1.0)),
                          along.origin, along.direction));
     }
-    return common(range, light_reach(light, along.origin, along.direction));
 }
 
 // The part of the ray whose way to the light may cross the ball around a box: of a sun the cylinder behind that ball,
@@ -149,13 +148,14 @@ void find_light(const Light& light, const LightPoint& point, const Ray& ray, con
     along.origin = dvec3(ray.origin), along.direction = dvec3(ray.direction);
     along.kinks.clear(), along.lit.clear(), along.shadowed.clear();
     Interval<double> range{0, ray.t_max};
+    if (along.local()) range = common(range, light_reach(light, along.origin, along.direction));
+    if (range.empty()) return;
     if (along.local()) {
         const dvec3 towards = dvec3(light.position) - along.origin;
         along.nearest = glm::dot(towards, along.direction) / glm::dot(along.direction, along.direction);
         along.distance = glm::length(towards - along.nearest * along.direction);
-        range = reached(light, along, range);
+        note_kinks(light, along);
     }
-    if (range.empty()) return;
     find_shadowed(media, along);
     if (slices && light.shadows) {
         const float end = std::nextafter(static_cast<float>(range.high), infinity);

@@ -35,10 +35,10 @@ Interval<double> reach_of(Packet& packet, const Light& light, size_t i) {
     const Ray& ray = packet.batch.rays[i];
     LightAlong& along = packet.scratch.along[i];
     find_light(light, center_of(light), {ray.origin, ray.direction, cuts.high(i)}, nullptr, {}, along);
-    packet.nearest[i] = static_cast<float>(along.nearest);
-    packet.away[i] = static_cast<float>(along.height());
     const std::vector<Interval<double>>& lit = along.lit;
     if (lit.empty()) return {};
+    packet.nearest[i] = static_cast<float>(along.nearest);
+    packet.away[i] = static_cast<float>(along.height());
     return {std::max<double>(lit.front().low, cuts.low(i)), std::min<double>(lit.back().high, cuts.high(i))};
 }
 
