@@ -1,5 +1,6 @@
 // Fog light cached in froxels (Wronski 2014; Hillaire 2015): filled once per frame, integrated front to back, found
 // again for every camera ray.
+#include "base/parallel.h"
 #include "base/simd/simd.h"
 #include "integrate/lights/field_light.h"
 #include "integrate/lights/fire_lamps.h"
@@ -90,18 +91,20 @@ void set_shadows(FroxelFrame& frame, FroxelStatics& statics) {
     if (scene.settings.visibility != FroxelVisibility::intervals || !occluders || occluders->empty()) return;
     const bool spread = scene.settings.shadow_rays > 1 || frame.frame > 0;
     constexpr float margin = 0.5f; // the tiles lie half a tile off where the picture ends within one
-    for (const Light& light : scene.snapshot.lights) {
-        scene.views.emplace_back(), scene.slices.push_back(nullptr);
+    const size_t lights = scene.snapshot.lights.size();
+    scene.views.resize(lights), scene.slices.resize(lights);
+    parallel_for(static_cast<int64_t>(lights), [&](int64_t i) {
+        const Light& light = scene.snapshot.lights[static_cast<size_t>(i)];
         const auto& casters = shadow_casters(light, scene.snapshot);
-        if (!casters) continue;
+        if (!casters) return;
         if (is_soft(light) && spread) {
-            scene.slices.back() = &casters->shadow_slices();
-            continue;
+            scene.slices[static_cast<size_t>(i)] = &casters->shadow_slices();
+            return;
         }
         const std::shared_ptr<const ShadowVolumes> volumes = cached_shadow_volumes(scene.snapshot, light);
-        scene.views.back() = std::make_unique<const ShadowView>(
+        scene.views[static_cast<size_t>(i)] = std::make_unique<const ShadowView>(
             view_from(*volumes, tile_camera(statics.grid), statics.grid.size, margin));
-    }
+    });
 }
 
 // Lamps whose shadows each ray of the picture finds by itself.
@@ -110,11 +113,12 @@ void set_pixel_shadows(const View& view, FroxelScene& scene) {
     if (scene.settings.visibility != FroxelVisibility::intervals || !occluders || occluders->empty()) return;
     scene.pixel_margin = view.filter == PixelFilter::center ? 0 : std::max(view.filter_radius - 0.5f, 0.0f);
     scene.pixel_views.resize(scene.snapshot.lights.size());
-    for (const size_t index : scene.beams) {
+    parallel_for(static_cast<int64_t>(scene.beams.size()), [&](int64_t i) {
+        const size_t index = scene.beams[static_cast<size_t>(i)];
         const Light& light = scene.snapshot.lights[index];
         if (shadow_casters(light, scene.snapshot) && has_exact_shadows(scene, light))
             scene.pixel_views[index] = lamp_views(scene.snapshot, light, view, scene.pixel_margin);
-    }
+    });
 }
 
 // What the last frame left, at this frame's froxels. What nobody else remembers is taken over as it is.

@@ -11,6 +11,11 @@ CacheKey shadow_key(const Snapshot& snapshot, const Light& light) {
     key.add(shadow_casters(light, snapshot)).add(light);
     return key;
 }
+
+std::shared_ptr<const ShadowMesh> cached_mesh_in_reach(const Snapshot& snapshot, const Light& light) {
+    return *cached(snapshot, "shadow mesh", shadow_key(snapshot, light),
+                   [&] { return mesh_in_reach(shadow_casters(light, snapshot)->shadow_mesh(), light); });
+}
 }
 
 std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snapshot& snapshot, const Light& light,
@@ -29,7 +34,7 @@ std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snaps
     return cached(snapshot, "shadow volumes", std::move(key.add(off)), [&] {
         LightPoint point = center_of(light);
         point.at += off;
-        return make_shadow_volumes(shadow_casters(light, snapshot)->shadow_mesh(), point);
+        return make_shadow_volumes(cached_mesh_in_reach(snapshot, light), point, shadow_reach(light));
     });
 }
 

@@ -1,6 +1,7 @@
 #include "trace/shadows/volumes/shadow_mesh.h"
 
 #include "base/random.h"
+#include "scene/light.h"
 
 #include <bit>
 
@@ -55,5 +56,62 @@ ShadowMesh make_shadow_mesh(const std::vector<ShadowTriangle>& triangles) {
     mesh.corners.assign(corners.keys.begin(), corners.keys.end());
     for (const auto& [a, b] : edges.keys) mesh.edges.push_back({a, b});
     return mesh;
+}
+
+namespace {
+// How far a point lies outside of a cone, metres; the half angle is at most π/2.
+double distance_to_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 point) {
+    const dvec3 offset = point - apex;
+    const double away = glm::length(offset);
+    if (!(away > 0)) return 0;
+    const double beside = std::acos(std::clamp(glm::dot(offset, axis) / away, -1.0, 1.0)) - half_angle;
+    return beside > 0 ? away * std::sin(std::min(beside, 0.5 * double{pi})) : 0;
+}
+
+// Whether a ball may stand between a point of the light's ball and what the light reaches: they and all that lies
+// between them are in the cone and the range, widened by the light's radius.
+bool may_shadow(const Light& light, dvec3 center, double radius) {
+    const double slack = radius + 1e-6 * (radius + glm::distance(center, dvec3(light.position)));
+    if (glm::distance(center, dvec3(light.position)) - slack > std::max(light.range, light.radius)) return false;
+    if (!has_cone(light) || light.outer_cone > pi / 2) return true;
+    return distance_to_cone(dvec3(light.position), glm::normalize(dvec3(light.direction)), double{light.outer_cone},
+                            center) <= slack + double{light.radius};
+}
+
+bool may_shadow(const Light& light, const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle) {
+    const dvec3 a = mesh.corners[triangle.corners[0]], b = mesh.corners[triangle.corners[1]],
+                c = mesh.corners[triangle.corners[2]], center = (a + b + c) / 3.0;
+    return may_shadow(light, center,
+                      std::max({glm::distance(a, center), glm::distance(b, center), glm::distance(c, center)}));
+}
+
+// New numbers of what is kept, in the same order: which corner of an edge comes first stays as it is.
+std::vector<uint32_t> renumbered(const std::vector<uint8_t>& kept) {
+    std::vector<uint32_t> numbers(kept.size());
+    for (uint32_t i = 0, next = 0; i < kept.size(); ++i) numbers[i] = kept[i] ? next++ : 0;
+    return numbers;
+}
+}
+
+std::shared_ptr<const ShadowMesh> mesh_in_reach(std::shared_ptr<const ShadowMesh> mesh, const Light& light) {
+    if (is_distant(light) || light.area) return mesh;
+    ShadowMesh part;
+    std::vector<uint8_t> corners(mesh->corners.size(), 0), edges(mesh->edges.size(), 0);
+    for (const ShadowMesh::Triangle& triangle : mesh->triangles) {
+        if (!may_shadow(light, *mesh, triangle)) continue;
+        part.triangles.push_back(triangle);
+        for (int k = 0; k < 3; ++k) corners[triangle.corners[k]] = edges[triangle.edges[k]] = 1;
+    }
+    if (part.triangles.size() == mesh->triangles.size()) return mesh;
+
+    const std::vector<uint32_t> corner = renumbered(corners), edge = renumbered(edges);
+    for (ShadowMesh::Triangle& triangle : part.triangles)
+        for (int k = 0; k < 3; ++k)
+            triangle.corners[k] = corner[triangle.corners[k]], triangle.edges[k] = edge[triangle.edges[k]];
+    for (size_t i = 0; i < corners.size(); ++i)
+        if (corners[i]) part.corners.push_back(mesh->corners[i]);
+    for (size_t i = 0; i < edges.size(); ++i)
+        if (edges[i]) part.edges.push_back({corner[mesh->edges[i].a], corner[mesh->edges[i].b]});
+    return std::make_shared<const ShadowMesh>(std::move(part));
 }
 }

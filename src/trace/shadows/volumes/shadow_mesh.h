@@ -3,7 +3,11 @@
 #pragma once
 #include "trace/occlusion/occluders.h"
 
+#include <memory>
+
 namespace tyndall {
+struct Light;
+
 struct ShadowMesh {
     struct Edge {
         uint32_t a = 0, b = 0; // corners, a < b
@@ -19,4 +23,8 @@ struct ShadowMesh {
 
 // Triangles with alpha and those without area are left out.
 ShadowMesh make_shadow_mesh(const std::vector<ShadowTriangle>& triangles);
+
+// The triangles that may shadow what a light reaches from any point of its ball: those by the cone of a spot, within
+// the light's range.
+std::shared_ptr<const ShadowMesh> mesh_in_reach(std::shared_ptr<const ShadowMesh> mesh, const Light& light);
 }

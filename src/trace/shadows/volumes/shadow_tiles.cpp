@@ -64,6 +64,7 @@ struct Span {
 
 struct Collector {
     const Projection& projection;
+    std::vector<Interval<int>> wanted; // tiles of each row; the rest stays empty
     std::vector<Span> spans;
     std::vector<float> nearest; // of each face
 
@@ -72,7 +73,10 @@ struct Collector {
             return std::clamp(static_cast<int>(std::floor(std::clamp(x, -1e6, 1e6) / tile_side)), 0,
                               projection.tiles.x - 1);
         };
-        spans.push_back({face, row, tile(low - projection.margin), tile(high + projection.margin)});
+        const Interval<int> of_row = wanted[static_cast<size_t>(row)];
+        const int first = std::max(tile(low - projection.margin), of_row.low);
+        const int last = std::min(tile(high + projection.margin), of_row.high);
+        if (first <= last) spans.push_back({face, row, first, last});
     }
 
     void add(uint32_t face, Polygon polygon) {
@@ -147,10 +151,38 @@ struct Collector {
 };
 }
 
+namespace {
+// The tiles of each row in which a beam is seen: those of its surface, a pyramid around it that ends at infinity.
+std::vector<Interval<int>> tiles_in_reach(const Projection& projection, const std::optional<ShadowReach>& reach) {
+    const std::vector<Interval<int>> all(static_cast<size_t>(projection.tiles.y), {0, projection.tiles.x - 1});
+    if (!reach) return all;
+    constexpr int edges = 8;
+    const double wide = 1.001 * std::tan(reach->half_angle) / std::cos(double{pi} / edges);
+    vec3 across, up;
+    make_frame(vec3(reach->axis), across, up);
+    const auto edge = [&](int i) {
+        const double angle = 2 * double{pi} * i / edges;
+        return projection.seen(reach->axis + wide * (std::cos(angle) * dvec3(across) + std::sin(angle) * dvec3(up)), 0);
+    };
+    Collector surface{projection, all, {}, {}};
+    for (int i = 0; i < edges; ++i) {
+        surface.add(0, {{projection.seen(reach->apex, 1), edge(i), edge(i + 1)}, 3});
+        surface.add(0, {{edge(0), edge(i), edge(i + 1)}, 3});
+    }
+    std::vector<Interval<int>> tiles(all.size(), {projection.tiles.x, -1});
+    for (const Span& span : surface.spans) {
+        Interval<int>& row = tiles[static_cast<size_t>(span.row)];
+        row.low = std::min(row.low, span.low), row.high = std::max(row.high, span.high);
+    }
+    return tiles;
+}
+}
+
 void fill_tiles(const ShadowVolumes& volumes, const Camera& camera, ivec2 size, float margin, ShadowView& view) {
     const Projection projection = make_projection(camera, size, margin);
     const ShadowMesh& mesh = *volumes.mesh;
-    Collector sides{projection, {}, {}}, caps{projection, {}, {}};
+    const std::vector<Interval<int>> wanted = tiles_in_reach(projection, volumes.reach);
+    Collector sides{projection, wanted, {}, {}}, caps{projection, wanted, {}, {}};
     for (uint32_t i = 0; i < view.sides.size(); ++i) {
         const ShadowMesh::Edge edge = mesh.edges[view.sides[i].edge];
         const dvec3 a = mesh.corners[edge.a], b = mesh.corners[edge.b];

@@ -1,5 +1,7 @@
 #include "trace/shadows/volumes/shadow_volumes.h"
 
+#include "scene/light.h"
+
 namespace tyndall {
 namespace {
 bool in_ball(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, const LightPoint& light) {
@@ -10,8 +12,15 @@ bool in_ball(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, const
 }
 }
 
-ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const LightPoint& light) {
-    ShadowVolumes result{std::move(mesh), light, {}, {}};
+std::optional<ShadowReach> shadow_reach(const Light& light) {
+    constexpr float widest = 80 * pi / 180; // beyond, a cone leaves out little
+    if (!has_cone(light) || light.area || light.outer_cone > widest) return {};
+    return ShadowReach{dvec3(light.position), glm::normalize(dvec3(light.direction)), double{light.outer_cone}};
+}
+
+ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const LightPoint& light,
+                                  std::optional<ShadowReach> reach) {
+    ShadowVolumes result{std::move(mesh), light, reach, {}, {}};
     const ShadowMesh& m = *result.mesh;
     std::vector<int> volumes(m.edges.size(), 0);
     for (uint32_t t = 0; t < m.triangles.size(); ++t) {

@@ -9,7 +9,18 @@
 #include "trace/lights/light_ray.h"
 #include "trace/shadows/volumes/shadow_mesh.h"
 
+#include <optional>
+
 namespace tyndall {
+struct Light;
+
+// The beam of a spot: shadows outside of it are never asked for.
+struct ShadowReach {
+    dvec3 apex{0}, axis{0, 0, -1}; // unit
+    double half_angle = 0;         // of its cone, below π/2
+};
+std::optional<ShadowReach> shadow_reach(const Light& light); // none = everywhere
+
 struct ShadowVolumes {
     struct Cap {
         uint32_t triangle = 0;
@@ -21,12 +32,14 @@ struct ShadowVolumes {
     };
     std::shared_ptr<const ShadowMesh> mesh;
     LightPoint light;
+    std::optional<ShadowReach> reach;
     std::vector<Cap> caps;
     std::vector<Side> sides; // none of 0 volumes
 };
 
 // Triangles the light sees edge-on, and those inside the light's ball, cast none.
-ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const LightPoint& light);
+ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const LightPoint& light,
+                                  std::optional<ShadowReach> reach = {});
 
 // From a corner towards the light, of any length.
 inline dvec3 towards(const LightPoint& light, dvec3 corner) { return light.far ? light.at : light.at - corner; }

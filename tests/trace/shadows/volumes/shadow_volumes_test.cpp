@@ -5,6 +5,8 @@
 #include "trace/shadows/volumes/shadow_view.h"
 #include "trace/small_scenes.h"
 
+#include "scene/light.h"
+#include "scene/light_reach.h"
 #include "trace/shadows/intervals/shadow_slices.h"
 
 #include <gtest/gtest.h>
@@ -116,6 +118,36 @@ TEST(ShadowMesh, JoinsWhatIsAtTheSamePlace) {
     EXPECT_EQ(two.corners.size(), 4u);
     EXPECT_EQ(two.edges.size(), 5u);
     EXPECT_EQ(two.triangles.size(), 2u);
+}
+
+// What a light reaches is as dark as before from every point of its ball; most of what it does not reach is gone.
+TEST(ShadowMesh, WhatALightReachesKeepsItsShadows) {
+    Light spot, lamp;
+    spot.kind = LightKind::spot, spot.position = vec3(0.5f, 3.4f, -0.4f), spot.radius = 0.2f;
+    spot.direction = glm::normalize(vec3(0.2f, -1, 0.3f)), spot.outer_cone = 0.25f;
+    lamp.position = vec3(0.1f, 0.2f, 0.3f), lamp.range = 1.5f, lamp.radius = 0.1f;
+    const auto whole = std::make_shared<const ShadowMesh>(make_shadow_mesh(triangles_of(random_boxes(40))));
+    for (const Light& light : {spot, lamp}) {
+        const auto part = mesh_in_reach(whole, light);
+        EXPECT_LT(part->triangles.size(), whole->triangles.size() / 2);
+        EXPECT_LT(part->corners.size(), whole->corners.size() / 2);
+        EXPECT_LT(part->edges.size(), whole->edges.size() / 2);
+        int reached = 0, shaded = 0;
+        for (uint32_t i = 0; i < 50000; ++i) {
+            LightPoint point = center_of(light);
+            point.at += 0.99 * double{light.radius} * dvec3(random_direction(i % 20, 31));
+            const dvec3 at(random_point(i, 32, room));
+            if (!(max_component(arrival(light, vec3(at)).irradiance) > 0)) continue;
+            const int dark = count_between(make_shadow_volumes(whole, point), at);
+            ASSERT_EQ(count_between(make_shadow_volumes(part, point), at), dark);
+            ++reached, shaded += dark > 0;
+        }
+        EXPECT_GT(shaded, 50);
+        EXPECT_GT(reached - shaded, 50);
+    }
+    Light sun;
+    sun.kind = LightKind::sun;
+    EXPECT_EQ(mesh_in_reach(whole, sun), whole);
 }
 
 TEST(ShadowVolumes, TheSilhouetteIsWhereFacingChanges) {
@@ -363,6 +395,48 @@ TEST(ShadowTiles, HoldAllThatTheirRaysCross) {
             EXPECT_GT(crossed, 100u);
         }
     }
+}
+
+// Of a spot only the tiles that its beam crosses hold anything, and those all that others would hold.
+TEST(ShadowTiles, OfABeamAreThoseItIsSeenIn) {
+    Camera cameras[4] = {look_at({3, 2, 5}, {0, 0, 0}, {0, 1, 0}, 0.9f),
+                         look_at({0.5f, 0, 0}, {0.5f, 3, -0.3f}, {1, 0, 0}, 1),    // in the beam, towards the lamp
+                         look_at({0.4f, 3.2f, -0.4f}, {0.5f, 0, 0}, {1, 0, 0}, 1), // as the lamp looks
+                         look_at({3, 2, 5}, {0, 0, 0}, {0, 1, 0}, 0.9f)};
+    cameras[3].ortho_height = 5;
+    const ivec2 size(150, 100);
+    Light spot;
+    spot.kind = LightKind::spot, spot.position = vec3(0.5f, 3, -0.4f);
+    spot.direction = glm::normalize(vec3(0.1f, -1, 0.15f));
+    const auto mesh = std::make_shared<const ShadowMesh>(make_shadow_mesh(triangles_of(random_boxes(30))));
+    for (const float half_angle : {0.05f, 0.3f, 1.2f})
+        for (const Camera& camera : cameras) {
+            spot.outer_cone = half_angle;
+            const LightPoint point = center_of(spot);
+            const ShadowView all = view_from(make_shadow_volumes(mesh, point), camera, size, 0.5f);
+            const ShadowView beam = view_from(make_shadow_volumes(mesh, point, shadow_reach(spot)), camera, size, 0.5f);
+            EXPECT_LE(beam.side_tiles.faces.size(), all.side_tiles.faces.size());
+            int inside = 0;
+            for (int i = 0; i < 3000; ++i) {
+                const vec2 pixel(static_cast<float>(i * 7919 % 1500) / 10, static_cast<float>(i * 104729 % 1000) / 10);
+                Ray ray = camera_ray(camera, size, pixel);
+                ray.t_max = 50;
+                if (light_reach(spot, ray, {0, ray.t_max}).empty()) continue;
+                const int tile = static_cast<int>(pixel.y) / shadow_tile_side * beam.tiles.x +
+                                 static_cast<int>(pixel.x) / shadow_tile_side;
+                EXPECT_EQ(crossings_of(beam, ray, tile).crossings.size(), crossings_of(all, ray).crossings.size());
+                ++inside;
+            }
+            EXPECT_GT(inside, 10);
+        }
+    spot.outer_cone = 0.05f;
+    const auto faces = [&](std::optional<ShadowReach> reach) {
+        return view_from(make_shadow_volumes(mesh, center_of(spot), reach), cameras[0], size, 0.5f)
+            .side_tiles.faces.size();
+    };
+    EXPECT_LT(5 * faces(shadow_reach(spot)), faces({}));
+    spot.kind = LightKind::point;
+    EXPECT_FALSE(shadow_reach(spot));
 }
 }
 }
