@@ -16,8 +16,8 @@ constexpr int looks = 5;          // moments at which places are compared
 constexpr float spacing = 0.75f;  // pixels between neighbouring moments: thin lines ripple by 6.4 %
 constexpr int fewest_moments = 4; // of what changes at all
 
-// What a moment has of its own, measured on the concert. Of a light that changes: its grid in fog of voxels, its
-// shadows, and what a mode that keeps pictures has of these.
+// What a moment has of its own, measured on lights that shine around. Of one that changes: its grid in fog of voxels,
+// its shadows, and what a mode that keeps pictures has of these. A beam's are as much less as it is narrower.
 constexpr double max_bytes = 8.0 * (1 << 30), bytes_per_triangle = 200, mebibyte = 1 << 20;
 constexpr double bytes_of_grid = 8 * mebibyte, bytes_of_shadows = 4 * mebibyte, bytes_of_beams = 16 * mebibyte;
 constexpr double bytes_per_pixel = 16, bytes_per_beam_pixel = 17;
@@ -163,14 +163,17 @@ double triangles_that_move(const Scene& scene) {
 }
 
 // `everything`: whether what is kept of lights is made anew at each moment.
-double bytes_of_moment(const Scene& scene, double pixels, bool everything, bool keeps_pictures) {
+double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool everything, bool keeps_pictures) {
     const bool voxels = std::ranges::any_of(scene.media, [](const MediumSource& medium) {
         return medium.kind == MediumKind::noise || medium.kind == MediumKind::vdb;
     });
-    double of_light = bytes_of_shadows + (voxels ? bytes_of_grid : 0), bytes = 0;
-    if (keeps_pictures) of_light += bytes_of_beams + bytes_per_beam_pixel * pixels, bytes += bytes_per_pixel * pixels;
-    for (const LightSource& light : scene.lights)
-        if (everything || changes(scene, light)) bytes += of_light;
+    double of_shadows = bytes_of_shadows, bytes = keeps_pictures ? bytes_per_pixel * pixels : 0;
+    if (keeps_pictures) of_shadows += bytes_of_beams + bytes_per_beam_pixel * pixels;
+    for (const LightSource& light : scene.lights) {
+        if (!everything && !changes(scene, light)) continue;
+        const float cone = has_cone(light) ? light.outer_cone.at(seconds) : pi;
+        bytes += (voxels ? bytes_of_grid : 0) + of_shadows * (cone < pi / 4 ? std::tan(cone) : 1);
+    }
     return bytes + bytes_per_triangle * triangles_that_move(scene);
 }
 }
@@ -185,7 +188,8 @@ int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const S
     const int count = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::min(wanted, most) + 0.999f)));
     const bool everything = changes(scene, scene.cameras[static_cast<size_t>(camera)]) ||
                             std::ranges::any_of(scene.media, [](const auto& medium) { return changes(medium); });
-    const double bytes = bytes_of_moment(scene, static_cast<double>(size.x) * size.y, everything, keeps_pictures);
+    const double bytes = bytes_of_moment(scene, seconds_of(scene, frame, shutter, 0.5f),
+                                         static_cast<double>(size.x) * size.y, everything, keeps_pictures);
     const double affordable = std::clamp(max_bytes / std::max(bytes, 1.0), double(fewest_moments), double(most));
     return std::min(finer * std::max(count, fewest_moments),
                     static_cast<int>(std::bit_floor(static_cast<unsigned>(affordable))));
