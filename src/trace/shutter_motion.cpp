@@ -16,11 +16,11 @@ constexpr int looks = 5;          // moments at which places are compared
 constexpr float spacing = 0.75f;  // pixels between neighbouring moments: thin lines ripple by 6.4 %
 constexpr int fewest_moments = 4; // of what changes at all
 
-// What a moment has of its own, measured on lights that shine around. Of one that changes: its grid in fog of voxels,
-// its shadows, and what a mode that keeps pictures has of these. A beam's are as much less as it is narrower.
-constexpr double max_bytes = 8.0 * (1 << 30), bytes_per_triangle = 200, mebibyte = 1 << 20;
-constexpr double bytes_of_grid = 8 * mebibyte, bytes_of_shadows = 4 * mebibyte, bytes_of_beams = 16 * mebibyte;
+// What a moment has of its own, as measured: triangles that move; of a light its grid in fog of voxels, its shadow
+// volumes, and what a mode that keeps pictures has of these from each point of the light and in tiles of the picture.
+constexpr double max_bytes = 8.0 * (1 << 30), bytes_per_triangle = 200, bytes_of_grid = 8 << 20;
 constexpr double bytes_per_pixel = 16, bytes_per_beam_pixel = 17;
+constexpr double max_bytes_of_volumes = 1 << 30; // beyond, none are kept: has_room_for_views()
 
 using Points = std::vector<vec3>;
 
@@ -154,12 +154,18 @@ bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter) 
 }
 
 namespace {
-double triangles_that_move(const Scene& scene) {
+template<class Counts> double count_triangles(const Scene& scene, const Counts& counts) {
     size_t triangles = 0;
     for (const Instance& instance : scene.instances)
-        if (instance.mesh >= 0 && is_moving(scene, instance.node))
+        if (instance.mesh >= 0 && counts(instance))
             triangles += scene.meshes[static_cast<size_t>(instance.mesh)].triangles.size();
     return static_cast<double>(triangles);
+}
+
+// How many times a light's shadow volumes are kept, at most.
+int kept_volumes(const LightSource& light, double seconds, bool keeps_pictures) {
+    if (!keeps_pictures) return 1;
+    return light.radius.at(seconds) > 0 ? 5 : 2;
 }
 
 // `everything`: whether what is kept of lights is made anew at each moment.
@@ -167,14 +173,19 @@ double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool e
     const bool voxels = std::ranges::any_of(scene.media, [](const MediumSource& medium) {
         return medium.kind == MediumKind::noise || medium.kind == MediumKind::vdb;
     });
-    double of_shadows = bytes_of_shadows, bytes = keeps_pictures ? bytes_per_pixel * pixels : 0;
-    if (keeps_pictures) of_shadows += bytes_of_beams + bytes_per_beam_pixel * pixels;
+    const double all = count_triangles(scene, [](const Instance&) { return true; });
+    const double moving = count_triangles(scene, [&](const Instance& one) { return is_moving(scene, one.node); });
+    double bytes = (keeps_pictures ? bytes_per_pixel * pixels : 0) + bytes_per_triangle * moving, volumes = 0;
     for (const LightSource& light : scene.lights) {
-        if (!everything && !changes(scene, light)) continue;
+        const bool anew = everything || changes(scene, light);
+        if (anew && voxels) bytes += bytes_of_grid;
+        if (!anew && moving == 0) continue;
         const float cone = has_cone(light) ? light.outer_cone.at(seconds) : pi;
-        bytes += (voxels ? bytes_of_grid : 0) + of_shadows * (cone < pi / 4 ? std::tan(cone) : 1);
+        const double share = cone < pi / 4 ? std::tan(cone) : 1; // a beam meets fewer surfaces and pixels
+        volumes += share * kept_volumes(light, seconds, keeps_pictures) * bytes_per_triangle * all;
+        if (keeps_pictures) bytes += share * bytes_per_beam_pixel * pixels;
     }
-    return bytes + bytes_per_triangle * triangles_that_move(scene);
+    return bytes + (volumes <= max_bytes_of_volumes ? volumes : 0);
 }
 }
 

@@ -1,6 +1,7 @@
 #include "integrate/single_scattering/single_scattering.h"
 
 #include "scene/light_filter.h"
+#include "trace/shadows/cached_shadows.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
@@ -15,8 +16,12 @@ namespace {
 constexpr uint64_t max_sliced = 200'000, max_with_volumes = 2'000'000;
 }
 
-ShadowsBy exact_shadows(const View& view, const Light& light, const Occluders& occluders) {
-    const bool sliced = is_soft(light) || view.camera.lens;
+bool has_room_for_volumes(const View& view, const Snapshot& snapshot) {
+    return has_room_for_views(snapshot, [&](const Light& light) { return is_soft(light) || view.camera.lens ? 0 : 1; });
+}
+
+ShadowsBy exact_shadows(const View& view, const Light& light, const Occluders& occluders, bool room) {
+    const bool sliced = is_soft(light) || view.camera.lens || !room;
     const uint64_t most = sliced ? max_sliced : max_with_volumes;
     if (occluders.has_alpha() || occluders.triangle_count() > most) return ShadowsBy::rays;
     return sliced ? ShadowsBy::slices : ShadowsBy::volumes;

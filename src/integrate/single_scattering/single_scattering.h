@@ -19,8 +19,10 @@ namespace tyndall {
 // points of the ray, by shadow rays or in a shadow map.
 enum class ShadowsBy { none, volumes, slices, rays, maps };
 
-// The quickest that is exact; rays where surfaces have alpha or are too many.
-ShadowsBy exact_shadows(const View& view, const Light& light, const Occluders& occluders);
+// The quickest that is exact; rays where surfaces have alpha or are too many. `room`: for the volumes of all lights
+// that would have some.
+ShadowsBy exact_shadows(const View& view, const Light& light, const Occluders& occluders, bool room);
+bool has_room_for_volumes(const View& view, const Snapshot& snapshot);
 
 struct LightShadows {
     ShadowsBy by = ShadowsBy::none;

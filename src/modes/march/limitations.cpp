@@ -26,10 +26,12 @@ void add_visibility(const View& view, const Snapshot& snapshot, const Settings& 
     if (alpha && (visibility == Visibility::intervals || visibility == Visibility::exact))
         limitations.push_back(
             {Severity::info, &limitation::sampled_alpha_shadows, Subject::setting, "march.visibility"});
-    if (visibility == Visibility::intervals && !alpha)
+    const bool exact = visibility == Visibility::intervals && !alpha;
+    const bool room = exact && has_room_for_volumes(view, snapshot);
+    if (exact)
         for (const Light& light : snapshot.lights)
             if (const auto& casters = shadow_casters(light, snapshot);
-                casters && exact_shadows(view, light, *casters) == ShadowsBy::rays)
+                casters && exact_shadows(view, light, *casters, room) == ShadowsBy::rays)
                 limitations.push_back({Severity::info,
                                        &limitation::sampled_shadows,
                                        Subject::light,

@@ -15,7 +15,8 @@
 
 namespace tyndall {
 namespace {
-ShadowsBy shadows_by(const View& view, Visibility visibility, const Light& light, const Occluders& occluders) {
+ShadowsBy shadows_by(const View& view, Visibility visibility, const Light& light, const Occluders& occluders,
+                     bool room) {
     switch (visibility) {
     case Visibility::off:
         return ShadowsBy::none;
@@ -24,7 +25,7 @@ ShadowsBy shadows_by(const View& view, Visibility visibility, const Light& light
     case Visibility::maps:
         return ShadowsBy::maps;
     case Visibility::intervals:
-        return exact_shadows(view, light, occluders);
+        return exact_shadows(view, light, occluders, room);
     case Visibility::exact:
         return ShadowsBy::slices;
     }
@@ -60,8 +61,9 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
     fog->opaque = fields.opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
     if (exact) fog->fields = std::move(fields.fields), fields.fields.clear();
+    const bool room = intervals && has_room_for_volumes(view, fog->snapshot);
     const auto by = [&](const Light& light) {
-        return shadows_by(view, march.visibility, light, *shadow_casters(light, snapshot));
+        return shadows_by(view, march.visibility, light, *shadow_casters(light, snapshot), room);
     };
     add_lights(view, settings.terms.light, settings.terms.light_resolution, by, *fog);
     add_steps(march, !intervals && !exact, *fog);

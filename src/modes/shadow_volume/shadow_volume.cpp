@@ -8,6 +8,7 @@
 #include "modes/mode.h"
 #include "modes/shadow_volume/limitations.h"
 #include "modes/shadow_volume/settings.h"
+#include "trace/shadows/cached_shadows.h"
 #include "trace/view.h"
 #include "volume/medium.h"
 
@@ -41,7 +42,9 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
                 frame->heterogeneous.push_back(medium.world_bounds);
         frame->snapshot.media = homogeneous_media(frame->snapshot.media);
     }
-    const auto by = [](const Light&) { return ShadowsBy::volumes; };
+    // What slices find is the same, more slowly.
+    const bool room = frame->shells || has_room_for_views(frame->snapshot, [](const Light&) { return 1; });
+    const auto by = [room](const Light&) { return room ? ShadowsBy::volumes : ShadowsBy::slices; };
     add_lights(view, without_froxels(settings.terms.light), settings.terms.light_resolution, by, *frame);
     ScatterFunction scatter = [frame](const RayBatch& batch, std::span<Scatter> results) {
         single_scattering_packet(*frame, batch, results);

@@ -12,10 +12,11 @@ CacheKey shadow_key(const Snapshot& snapshot, const Light& light) {
     return key;
 }
 
-std::shared_ptr<const ShadowMesh> cached_mesh_in_reach(const Snapshot& snapshot, const Light& light) {
+}
+
+std::shared_ptr<const ShadowMesh> cached_shadow_mesh(const Snapshot& snapshot, const Light& light) {
     return *cached(snapshot, "shadow mesh", shadow_key(snapshot, light),
                    [&] { return mesh_in_reach(shadow_casters(light, snapshot)->shadow_mesh(), light); });
-}
 }
 
 std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snapshot& snapshot, const Light& light,
@@ -34,8 +35,17 @@ std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snaps
     return cached(snapshot, "shadow volumes", std::move(key.add(off)), [&] {
         LightPoint point = center_of(light);
         point.at += off;
-        return make_shadow_volumes(cached_mesh_in_reach(snapshot, light), point, shadow_reach(light));
+        return make_shadow_volumes(cached_shadow_mesh(snapshot, light), point, shadow_reach(light));
     });
+}
+
+bool has_room_for_views(const Snapshot& snapshot, const std::function<size_t(const Light&)>& views) {
+    constexpr size_t bytes_per_triangle = 200, most = size_t{1} << 30;
+    size_t triangles = 0;
+    for (const Light& light : snapshot.lights)
+        if (const size_t count = shadow_casters(light, snapshot) ? views(light) : 0)
+            triangles += count * cached_shadow_mesh(snapshot, light)->triangles.size();
+    return triangles * bytes_per_triangle <= most;
 }
 
 std::shared_ptr<const ShadowView> cached_shadow_view(const Snapshot& snapshot, const Light& light, const View& view,

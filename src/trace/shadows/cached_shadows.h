@@ -3,6 +3,8 @@
 #include "trace/shadows/maps/shadow_map.h"
 #include "trace/shadows/volumes/shadow_view.h"
 
+#include <functional>
+
 namespace tyndall {
 using ShadowMaps = std::vector<std::shared_ptr<const ShadowMap>>;
 
@@ -10,9 +12,16 @@ using ShadowMaps = std::vector<std::shared_ptr<const ShadowMap>>;
 std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snapshot& snapshot, const Light& light,
                                                    const ShadowMapOptions& options);
 
+// What may shadow anything that the light reaches.
+std::shared_ptr<const ShadowMesh> cached_shadow_mesh(const Snapshot& snapshot, const Light& light);
+
 // Of the light's centre, or of a point so far off it. Surfaces shadow the light.
 std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light,
                                                            dvec3 off = dvec3(0));
+
+// Whether there is room for the shadows of all lights as cameras see them, a gigabyte; `views`: how many of a light are
+// wanted.
+bool has_room_for_views(const Snapshot& snapshot, const std::function<size_t(const Light&)>& views);
 
 // The same as the view's camera sees them; see view_from().
 std::shared_ptr<const ShadowView> cached_shadow_view(const Snapshot& snapshot, const Light& light, const View& view,

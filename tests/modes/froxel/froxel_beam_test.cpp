@@ -4,9 +4,11 @@
 
 #include "base/random.h"
 #include "integrate/equi_angular.h"
+#include "modes/froxel/beams/beam_shadows.h"
 #include "modes/history.h"
 #include "scene/light_reach.h"
 #include "trace/lights/light_ray.h"
+#include "trace/shadows/cached_shadows.h"
 #include "volume/phase.h"
 
 #include <gtest/gtest.h>
@@ -126,6 +128,35 @@ TEST(FroxelBeam, LampsInFogOfClosedFormAreExact) {
         EXPECT_LT(error("froxel.lookup=tricubic"), 0.015);
         EXPECT_GT(error("froxel.visibility=off"), 0.03); // there are shadows
     }
+}
+
+// Where the shadows of all lamps would take gigabytes they are those of froxels.
+TEST(FroxelBeam, LampsTooManyForTheirShadowsAreDrawnByFroxels) {
+    Mesh crowd; // out of sight and of the lamps' way
+    for (int i = 0; i < 16000; ++i) {
+        const Mesh one = quad({0.01f * static_cast<float>(i), -50, 0}, {0.01f, 0, 0}, {0, 0, 0.01f});
+        const auto first = static_cast<uint32_t>(crowd.positions.size());
+        crowd.positions.insert(crowd.positions.end(), one.positions.begin(), one.positions.end());
+        for (const glm::uvec3 triangle : one.triangles) crowd.triangles.push_back(triangle + first);
+    }
+    constexpr int count = 50;
+    Light lamp = point_light({-1.2f, 0.4f, 0.3f}, 5.0f / count);
+    lamp.radius = 0.02f;
+    const Medium mist = homogeneous_medium(0.15f, {vec3(-3), vec3(3)});
+    const std::vector<Mesh> meshes{box_of({-0.5f, -0.6f, -0.4f}, {-0.4f, 0.15f, 1}), crowd};
+    const Stage many = stage_of({mist}, std::vector<Light>(count, lamp), meshes, vec3(0));
+    const auto views = [](const Light& light) { return lamp_points(light); };
+    EXPECT_FALSE(has_room_for_views(many.snapshot, views));
+    EXPECT_TRUE(has_room_for_views(many.snapshot, [](const Light&) { return 1; }));
+
+    const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
+    const std::vector<Ray> rays = picture_rays(view, many.snapshot, 12);
+    lamp.intensity *= count;
+    const std::vector<Scatter> truth =
+        marched(stage_of({mist}, {lamp}, meshes, vec3(0)).snapshot, exact_settings(), rays);
+    EXPECT_LT(relative_rmse(scattered(froxels(view, many.snapshot, {}), rays), truth), 0.12);
+    EXPECT_GT(relative_rmse(scattered(froxels(view, many.snapshot, with({"froxel.visibility=off"})), rays), truth),
+              0.12);
 }
 
 // The shadows of a lamp with a radius are the mean of those of its points, and far from those of its centre.

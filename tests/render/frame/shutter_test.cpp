@@ -300,15 +300,30 @@ TEST(UsualMoments, MemoryBoundsThem) {
         return usual_moments(moving.scene, 0, ivec2(4000), 0, shutter, keeps_pictures, finer);
     };
     EXPECT_EQ(count(1, false), max_usual_moments);
-    EXPECT_EQ(count(1, true), 8); // 0.55 GB each
+    EXPECT_EQ(count(1, true), 16); // 0.53 GB each
     MediumSource fog;
     fog.kind = MediumKind::vdb;
     moving.scene.media.push_back(fog);
-    EXPECT_EQ(count(1, false), max_usual_moments); // 12 MiB
-    EXPECT_EQ(count(3, false), 128);
-    EXPECT_EQ(count(24, false), 16);
-    EXPECT_EQ(count(24, false, 2), 16);
+    EXPECT_EQ(count(1, false), max_usual_moments); // 8 MiB
+    EXPECT_EQ(count(3, false), 256);
+    EXPECT_EQ(count(24, false), 32);
+    EXPECT_EQ(count(24, false, 2), 32);
     EXPECT_EQ(count(24, true), 4); // however much that is
+    for (LightSource& light : moving.scene.lights) light.kind = LightKind::spot, light.outer_cone = 0.05f;
+    EXPECT_EQ(count(24, true), 8); // 0.8 GB: beams are seen in a twentieth of the picture
+}
+
+TEST(UsualMoments, ShadowVolumesBoundThem) {
+    Moving moving;
+    put(moving, false);
+    moving.scene.lights.resize(24);
+    const auto count = [&](size_t triangles) {
+        moving.scene.meshes[0].triangles.resize(triangles);
+        return usual_moments(moving.scene, 0, ivec2(4000), 0, moving.scene.cameras[0].shutter, false, 1);
+    };
+    EXPECT_EQ(count(100), max_usual_moments);
+    EXPECT_EQ(count(200'000), 8);                 // 0.96 GB each
+    EXPECT_EQ(count(400'000), max_usual_moments); // more than is kept of them
 }
 
 TEST(UsualMoments, NothingThatMovesNeedsOne) {

@@ -6,12 +6,17 @@
 #include <algorithm>
 
 namespace tyndall {
+namespace {
+// The corners of a tetrahedron, askew to the axes that things are built along: seen from any side they spread as far as
+// the disc of the ball does, a quarter of its squared radius each way.
+constexpr double askew[4][3] = {
+    {0.3323, 0.0873, -0.7949}, {-0.6396, -0.5836, -0.0170}, {-0.3117, 0.7623, 0.2679}, {0.6190, -0.2660, 0.5440}};
+}
+
+size_t lamp_points(const Light& light) { return is_soft(light) ? std::size(askew) : 1; }
+
 LampViews lamp_views(const Snapshot& snapshot, const Light& light, const View& view, float margin) {
     if (!is_soft(light)) return {cached_shadow_view(snapshot, light, view, margin)};
-    // The corners of a tetrahedron, askew to the axes that things are built along: seen from any side they spread as
-    // far as the disc of the ball does, a quarter of its squared radius each way.
-    constexpr double askew[4][3] = {
-        {0.3323, 0.0873, -0.7949}, {-0.6396, -0.5836, -0.0170}, {-0.3117, 0.7623, 0.2679}, {0.6190, -0.2660, 0.5440}};
     LampViews views;
     for (const auto& [x, y, z] : askew)
         views.push_back(cached_shadow_view(snapshot, light, view, margin, double(light.radius) * dvec3(x, y, z)));

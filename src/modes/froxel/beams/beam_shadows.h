@@ -13,6 +13,7 @@ struct View;
 
 // A lamp's shadows from its centre or, where it is soft, from some points of it.
 using LampViews = std::vector<std::shared_ptr<const ShadowView>>;
+size_t lamp_points(const Light& light); // how many those are
 LampViews lamp_views(const Snapshot& snapshot, const Light& light, const View& view, float margin);
 
 // Intervals of sixteen rays in metres along each: the i-th of every ray side by side, ascending, empty (low >= high)

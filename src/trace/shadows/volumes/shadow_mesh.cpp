@@ -94,7 +94,7 @@ std::vector<uint32_t> renumbered(const std::vector<uint8_t>& kept) {
 }
 
 std::shared_ptr<const ShadowMesh> mesh_in_reach(std::shared_ptr<const ShadowMesh> mesh, const Light& light) {
-    if (is_distant(light) || light.area) return mesh;
+    if (light.area || (!has_cone(light) && std::isinf(light.range))) return mesh;
     ShadowMesh part;
     std::vector<uint8_t> corners(mesh->corners.size(), 0), edges(mesh->edges.size(), 0);
     for (const ShadowMesh::Triangle& triangle : mesh->triangles) {
