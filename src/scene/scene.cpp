@@ -46,12 +46,12 @@ mat4 medium_matrix(const MediumSource& medium, double seconds) {
     return medium.z_up ? placed * upright : placed;
 }
 
-std::vector<const VdbSequence*> volume_sequences(const MediumSource& medium) {
-    std::vector<const VdbSequence*> sequences;
+std::vector<const FileSequence*> volume_sequences(const MediumSource& medium) {
+    std::vector<const FileSequence*> sequences;
     if (medium.kind != MediumKind::vdb) return sequences;
     sequences.push_back(&medium.sequence);
     const auto add = [&](const GridSource& grid) {
-        const auto same = [&](const VdbSequence* one) { return one->pattern == grid.sequence.pattern; };
+        const auto same = [&](const FileSequence* one) { return one->pattern == grid.sequence.pattern; };
         if (std::ranges::none_of(sequences, same)) sequences.push_back(&grid.sequence);
     };
     for (const auto* grid : {&medium.albedo_grid, &medium.emission_grid, &medium.temperature, &medium.flame})
@@ -106,7 +106,7 @@ std::vector<FrameFile> frame_files(const Scene& scene, int frame, MissingFrame m
     std::vector<FrameFile> files;
     for (const MediumSource& medium : scene.media) {
         const auto [first, last] = frames_shown(medium, frame, shutter);
-        for (const VdbSequence* sequence : volume_sequences(medium))
+        for (const FileSequence* sequence : volume_sequences(medium))
             for (int shown = first; shown <= last; ++shown)
                 files.push_back({true, sequence_file(*sequence, shown, missing)});
     }

@@ -1,5 +1,6 @@
 // What the files say: plain data, every number possibly animated. How to render is not in here.
 #pragma once
+#include "base/io/file_sequence.h"
 #include "scene/background_kind.h"
 #include "scene/gobo.h"
 #include "scene/keyed.h"
@@ -11,7 +12,6 @@
 #include "volume/emission/blackbody.h"
 #include "volume/recipe/recipe.h"
 #include "volume/value_map.h"
-#include "volume/vdb/sequence.h"
 
 #include <filesystem>
 #include <memory>
@@ -65,7 +65,7 @@ enum class LightUnit {
 
 struct GoboSource {
     std::shared_ptr<const Gobo> still; // null: one of a sequence for every frame
-    VdbSequence sequence;
+    FileSequence sequence;
     ColorSpace space = ColorSpace::srgb;
     Keyed<float> turn{0.0f}; // radians, counterclockwise as seen from the light
     Keyed<float> scale{1.0f};
@@ -104,7 +104,7 @@ enum class MediumKind { homogeneous, height, noise, vdb };
 
 // One property of fog, in a grid of a file or sequence.
 struct GridSource {
-    VdbSequence sequence;
+    FileSequence sequence;
     std::vector<std::string> grids; // a name, or those of red, green and blue
     ValueMap map;
 };
@@ -141,7 +141,8 @@ struct MediumSource {
     std::optional<FogRecipe> recipe;                      // noise
     float voxel_size = 0;                                 // noise: instead of the recipe's, metres
     bool z_up = false;                                    // noise, vdb: the volume's z is up, its -y is the scene's z
-    VdbSequence sequence;                                 // vdb: of the density
+    FileSequence sequence;                                // vdb: of the density
+    std::string density_grid;                             // vdb: its name; empty = the usable one
     ValueMap density_map;                                 // vdb
     std::optional<GridSource> albedo_grid, emission_grid; // vdb: factors on `albedo`, and on `emission`
     std::optional<GridSource> temperature, flame;         // vdb: kelvin, and a factor on what they emit
@@ -242,7 +243,7 @@ std::vector<FrameFile> frame_files(const Scene& scene, int frame, MissingFrame m
 // The picture of a gobo for a frame; where gaps are skipped elsewhere, the one before goes on.
 std::filesystem::path gobo_file(const GoboSource& gobo, int frame, MissingFrame missing);
 // The files of a medium: of its density and of every other property, each once.
-std::vector<const VdbSequence*> volume_sequences(const MediumSource& medium);
+std::vector<const FileSequence*> volume_sequences(const MediumSource& medium);
 
 // Whether it emits light at any time.
 bool emits_light(const MediumSource& medium);

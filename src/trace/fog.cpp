@@ -97,16 +97,16 @@ struct Reading {
 FogSource read(const MediumSource& source, int frame, const Reading& reading, std::span<const FogSource> known) {
     const auto file = sequence_file(source.sequence, frame, reading.missing);
     if (!file) return {};
-    const std::string key = file_key(*file) + source.sequence.grid + source.density_map.text();
+    const std::string key = file_key(*file) + source.density_grid + source.density_map.text();
     for (const FogSource& one : known)
         if (one.key == key) return one;
     CacheFolder* files = reading.files;
     const std::string content =
-        files ? "file " + file_hash(*file, *files->inputs) + " " + source.sequence.grid + source.density_map.text()
+        files ? "file " + file_hash(*file, *files->inputs) + " " + source.density_grid + source.density_map.text()
               : std::string();
     const StoredFog fog = found_or_made<StoredFog>(files, "bricks", content, [&] {
         VdbReadReport report;
-        const SparseVolume volume = read_vdb(*file, source.sequence.grid, source.density_map, infinity, &report);
+        const SparseVolume volume = read_vdb(*file, source.density_grid, source.density_map, infinity, &report);
         return stored_fog(volume, report.summary());
     });
     if (!fog.note.empty()) reading.notes.push_back(file->filename().string() + ": " + fog.note);

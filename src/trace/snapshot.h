@@ -1,9 +1,9 @@
 // A scene at one moment, ready to trace.
 #pragma once
+#include "base/io/file_sequence.h"
 #include "base/math.h"
 #include "scene/background_kind.h"
 #include "trace/moment.h"
-#include "volume/vdb/sequence.h"
 
 #include <array>
 #include <memory>

@@ -91,6 +91,9 @@ template<class T> T phase_value_of(const Phase& phase, T cosine) {
 
 inline float phase_value(const Phase& phase, float cosine) { return phase_value_of<float>(phase, cosine); }
 
+// The largest value of its lobes, straight on or back, 1/sr.
+inline float phase_peak(const Phase& phase) { return std::max(phase_value(phase, 1.0f), phase_value(phase, -1.0f)); }
+
 // A direction picked with density phase_value(phase, dot(direction, result)), by two numbers in [0,1).
 vec3 sample_phase(const Phase& phase, vec3 direction, vec2 u);
 }

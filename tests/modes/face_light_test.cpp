@@ -113,14 +113,37 @@ TEST(FaceLight, FogScattersOnceAsByQuadrature) {
             }
 }
 
+Ray towards_face(const Light& light) {
+    return light.area->two_sided ? Ray{{-1, 0.5f, -0.6f}, glm::normalize(vec3(1, 0.1f, 0.5f)), 0.9f}
+                                 : Ray{{0, -2, 0.1f}, glm::normalize(vec3(0.1f, 1, 0)), 2.6f};
+}
+
 // Directions are then picked by the phase function as well, near and far from discs.
 TEST(FaceLight, NarrowPhaseFunctionsFindTheFace) {
     for (Light light : some_faces()) {
         const Snapshot snapshot = snapshot_of({homogeneous_medium(0.5f, wide_box, forward_phase(0.9f))}, {light});
-        const Ray past = light.area->two_sided ? Ray{{-1, 0.5f, -0.6f}, glm::normalize(vec3(1, 0.1f, 0.5f)), 0.9f}
-                                               : Ray{{0, -2, 0.1f}, glm::normalize(vec3(0.1f, 1, 0)), 2.6f};
-        expect_near(marched_light(snapshot, past, 1 << 11), light_by_quadrature(light, forward_phase(0.9f), 0.5, past),
-                    0.005, "march");
+        const Ray past = towards_face(light);
+        const dvec3 expected = light_by_quadrature(light, forward_phase(0.9f), 0.5, past);
+        expect_near(marched_light(snapshot, past, 1 << 11), expected, 0.005, "march");
+        expect_near(path_fog_light(snapshot, past, 1 << 12), expected, 0.01, "path");
+    }
+}
+
+// Of light without shadows paths find nothing by their directions: where there are no surfaces it has to be the same.
+TEST(FaceLight, PathsFindTheSameByTheirDirectionsAndByAimingAlone) {
+    const Medium fog = homogeneous_medium(1, {vec3(-1.5f), vec3(1.5f)}, forward_phase(0.95f), vec3(0.9f));
+    for (Light light : some_faces()) {
+        const Ray ray = towards_face(light);
+        const auto estimate = [&](bool shadows) {
+            light.shadows = shadows;
+            return estimate_ray(path_mode(snapshot_of({fog}, {light}), 4), ray, 1 << 9, fog_light);
+        };
+        const RayEstimate both = estimate(true), aimed = estimate(false);
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR(both.value[c], aimed.value[c], sigmas * std::hypot(both.error[c], aimed.error[c]));
+            EXPECT_LT(both.error[c], 0.7 * aimed.error[c]) << traits_of(light.area->kind).name;
+            EXPECT_LT(both.error[c], 0.05 * both.value[c]);
+        }
     }
 }
 

@@ -12,8 +12,8 @@ SparseVolume tenth_volume(ivec3 size, const std::function<float(ivec3)>& value) 
     return volume;
 }
 
-VdbSequence grid_file(const Scratch& scratch, const std::string& name, SparseVolume volume) {
-    VdbSequence sequence;
+FileSequence grid_file(const Scratch& scratch, const std::string& name, SparseVolume volume) {
+    FileSequence sequence;
     sequence.pattern = scratch.file(name + ".vdb");
     volume.name = name;
     write_vdb(sequence.pattern, volume, {.half = false});

@@ -12,7 +12,7 @@ namespace tyndall::test {
 SparseVolume tenth_volume(ivec3 size, const std::function<float(ivec3)>& value);
 
 // A file of one grid in the folder.
-VdbSequence grid_file(const Scratch& scratch, const std::string& name, SparseVolume volume);
+FileSequence grid_file(const Scratch& scratch, const std::string& name, SparseVolume volume);
 
 // Fog of that name with nothing but a density, or without one (`extinction` 0).
 MediumSource grid_source(const Scratch& scratch, const std::string& name, const SparseVolume& density, float extinction,

@@ -19,8 +19,8 @@ using namespace test;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-VdbSequence file_of(const Scratch& scratch, const std::string& name, SparseVolume volume) {
-    VdbSequence sequence;
+FileSequence file_of(const Scratch& scratch, const std::string& name, SparseVolume volume) {
+    FileSequence sequence;
     sequence.pattern = scratch.file(name + ".vdb");
     volume.name = name;
     write_vdb(sequence.pattern, volume, {.half = false});

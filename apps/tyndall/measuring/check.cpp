@@ -59,7 +59,7 @@ template<class Check> void guarded(const std::string& file, Problems& problems, 
 
 // The files of a sequence on the scene's frames, each once.
 template<class Check>
-void check_frames(const std::string& file, const Scene& scene, const VdbSequence& sequence, Problems& problems,
+void check_frames(const std::string& file, const Scene& scene, const FileSequence& sequence, Problems& problems,
                   const Check& check) {
     std::set<std::filesystem::path> seen;
     for (int frame = scene.first_frame; frame <= scene.last_frame; ++frame)
@@ -82,7 +82,7 @@ void check_media(const std::string& file, const Scene& scene, Problems& problems
         if (medium.kind != MediumKind::vdb) continue;
         if (some(medium.extinction) || (emits_light(medium) && !medium.blackbody && !medium.emission_grid))
             check_frames(file, scene, medium.sequence, problems, [&](const auto& volume, VdbReadReport& report) {
-                read_vdb(volume, medium.sequence.grid, medium.density_map, infinity, &report);
+                read_vdb(volume, medium.density_grid, medium.density_map, infinity, &report);
             });
         for (const auto* grid : {&medium.albedo_grid, &medium.emission_grid, &medium.temperature, &medium.flame}) {
             if (!*grid) continue;
@@ -138,7 +138,7 @@ void check_gltf(const std::string& file, Problems& problems) {
 
 // A numbered name stands for `frames`, or without them for all its files and the gaps between them. Returns how many.
 size_t check_sequence(const std::string& pattern, std::vector<int> frames, Problems& problems) {
-    const VdbSequence sequence = find_sequence(pattern, ".");
+    const FileSequence sequence = find_sequence(pattern, ".");
     if (frames.empty()) frames = frames_between(sequence.files.front(), sequence.files.back());
     for (const int frame : frames)
         guarded(pattern, problems, [&] {

@@ -15,8 +15,7 @@ std::shared_ptr<const ScatteringFog> scattering_fog(const Snapshot& snapshot, co
     for (const Medium& medium : snapshot.media) {
         if (only_emits(medium.optics)) continue;
         fog->media.push_back(medium);
-        const Phase& phase = medium.optics.phase;
-        fog->peaks.push_back(std::max(phase_value(phase, 1.0f), phase_value(phase, -1.0f)));
+        fog->peaks.push_back(phase_peak(medium.optics.phase));
     }
     fog->light_depth = terms.light == LightTransmittance::off ? 0 : style.light_depth;
     fog->min_transmittance = min_transmittance, fog->points = terms.light_points;

@@ -16,7 +16,8 @@ void append_froxel_rows(std::vector<SettingRow>& rows) {
                               TYNDALL_FIELD(of<FroxelSettings>().depth_growth)));
     rows.push_back(choice_row("froxel.visibility", {"off", "rays", "intervals"},
                               "shadows of surfaces in the fog; rays = sampled in each froxel, intervals = the exact "
-                              "lit share of the line through its middle",
+                              "lit share of the line through its middle, and of lamps that of each camera ray where "
+                              "their shadows fit in 1 GiB",
                               TYNDALL_FIELD(of<FroxelSettings>().visibility)));
     rows.push_back(number_row("froxel.shadow_rays", "", 1, 256,
                               "points of each froxel at which light and fog are sampled; with intervals, points of a "

@@ -22,7 +22,7 @@ void append_march_rows(std::vector<SettingRow>& rows) {
         choice_row("march.visibility", {"off", "rays", "maps", "intervals", "exact"},
                    "shadows of surfaces in the fog; intervals = integrated over the lit intervals of each ray, "
                    "found without sampling (by rays where surfaces have alpha, or more than 200000 "
-                   "triangles and soft lights); rays = sampled at each step; maps = looked up in "
+                   "triangles and soft or many lights); rays = sampled at each step; maps = looked up in "
                    "shadow maps at each step (shadow_map.*); exact = as intervals, and everything else "
                    "integrated as exactly as the fog allows: the reference",
                    TYNDALL_FIELD(march.visibility)));

@@ -34,6 +34,7 @@ Connection connection_to_face(const Light& light, vec3 point, int index, vec2 u)
     Connection c;
     c.point = point, c.to_light = c.shadow = sample.direction;
     c.fog_length = sample.distance, c.shadow_length = sample.distance * 0.9999f;
+    c.steradians = sample.steradians;
     c.irradiance =
         radiance_of(light) * sample.steradians * face_picture(*light.area, point + sample.distance * sample.direction);
     c.shadows = light.shadows, c.casters = light.casters, c.light_index = index;

@@ -17,6 +17,7 @@ struct Connection {
     int casters = -1;     // set of the snapshot whose surfaces may be in the way; -1 = all
     vec3 light{0};        // what reaches the eye if nothing is in the way
     vec3 irradiance{0};   // of a light with a face: what arrives from it by this connection, facing it
+    float steradians = 0; // likewise: one over the chance per steradian of the way
     int light_index = -1; // of the snapshot; -1 = none of its lights, but the next
     OtherLight other = OtherLight::emission;
     size_t lane = 0;     // of the batch

@@ -1,5 +1,5 @@
 // Light from fog on a stretch of a line.
-#include "modes/path/vertex.h"
+#include "modes/path/faces.h"
 #include "scene/light.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
@@ -9,19 +9,7 @@ namespace {
 // Of the chance to collide, what counts beside picking: places on a line are picked by their brightness, collisions are
 // not. Between 1/4 and 1/16 noise is within 5 % of its least, in flames of 0.5 as in those of 200 optical depths.
 constexpr float collision_share = 1.0f / 8;
-}
 
-float colliding_chance(const Snapshot& snapshot, vec3 position, int& lookups) {
-    float extinction = 0;
-    for (const Medium& medium : snapshot.media) {
-        if (only_emits(medium.optics)) continue;
-        extinction += grey_extinction(medium.optics) * density_at(medium, position);
-        ++lookups;
-    }
-    return collision_share * extinction;
-}
-
-namespace {
 void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
     fog.position = position, fog.total = 0;
     fog.extinction.resize(snapshot.media.size()), fog.albedo.resize(snapshot.media.size());
@@ -103,17 +91,10 @@ void weigh(const Walk& walk, const Segment& line, const Connection& connection, 
                 other = fog.total * guess * pick_chance(snapshot, fog.position, connection.light_index);
     if (!(chance > 0)) return;
     const float cosine = glm::dot(connection.to_light, line.rest.direction);
-    candidate.scattered = fog.scattered(snapshot, cosine) * (fog.total / (chance + other)) * connection.light;
+    const float share =
+        fog.total / (chance + other) * aimed_share(walk, fog, connection, peak_for_faces(walk.tracer, fog), cosine);
+    candidate.scattered = fog.scattered(snapshot, cosine) * share * connection.light;
     candidate.brightness = luminance(candidate.scattered) * guess;
-}
-
-// An estimate of the share of light that passes all fog between two distances.
-float passing_share(const Walk& walk, Segment& line, Interval<float> range) {
-    float share = 1;
-    for (const Medium& medium : walk.snapshot.media)
-        if (share > 0)
-            share *= ratio_transmittance(medium, line.rest, range, line.random, walk.results[line.walker.lane].steps);
-    return share;
 }
 
 // Where a medium lies on the stretch, when it is so thin there that paths hardly ever collide with it; else empty.
@@ -235,7 +216,7 @@ void gather_sky_at_collision(const Walk& walk, Segment& line, const FogPoint& fo
 }
 
 // Light that reaches the point of a collision, straight from lights and glowing surfaces.
-void gather_at_collision(const Walk& walk, Segment& line, float distance, const FogPoint& fog) {
+void gather_at_collision(const Walk& walk, Segment& line, float distance, const FogPoint& fog, float peak) {
     const Snapshot& snapshot = walk.snapshot;
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
     int& lookups = walk.results[line.walker.lane].steps;
@@ -248,9 +229,10 @@ void gather_at_collision(const Walk& walk, Segment& line, float distance, const 
             connection_to_light(walk.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft));
         const Light& light = snapshot.lights[static_cast<size_t>(pick.light)];
         const vec3 irradiance = light.area ? connection.irradiance * light.volume_scale : pick.irradiance;
-        const vec3 scattered = fog.scattered(snapshot, glm::dot(connection.to_light, line.rest.direction)) * irradiance;
+        const float cosine = glm::dot(connection.to_light, line.rest.direction);
         const float weight = mine > 0 ? mine / (mine + other) : (other > 0 ? 0.0f : 1.0f);
-        queue(walk, line, connection, scattered * (weight / pick.chance), in_fog);
+        const float share = weight * aimed_share(walk, fog, connection, peak, cosine);
+        queue(walk, line, connection, fog.scattered(snapshot, cosine) * irradiance * (share / pick.chance), in_fog);
     }
     if (walk.tracer.fire) {
         const EmissivePlace target = pick_fire(walk, line);
@@ -308,13 +290,32 @@ void collide(const Walk& walk, Segment& line) {
     if (!(fog.total > 0)) return;
     if (walk.tracer.fire) gather_fire_at_collision(walk, line, nearest, fog);
     if (!walk.turns) return;
-    gather_at_collision(walk, line, nearest, fog);
+    const float peak = peak_for_faces(walk.tracer, fog);
+    gather_at_collision(walk, line, nearest, fog, peak);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
     const float density = fog.density(snapshot, glm::dot(direction, line.rest.direction));
     const float sky_scale = walk.tracer.finds_sky ? snapshot.environment->volume_scale : 0;
-    scatter(walk, line, {fog.position, direction}, fog.albedo_of(optics, static_cast<size_t>(hit)), density, sky_scale,
-            in_fog);
+    const vec3 albedo = fog.albedo_of(optics, static_cast<size_t>(hit));
+    scatter(walk, line, {{fog.position, direction}, albedo, density, sky_scale, peak}, in_fog);
 }
+}
+
+float colliding_chance(const Snapshot& snapshot, vec3 position, int& lookups) {
+    float extinction = 0;
+    for (const Medium& medium : snapshot.media) {
+        if (only_emits(medium.optics)) continue;
+        extinction += grey_extinction(medium.optics) * density_at(medium, position);
+        ++lookups;
+    }
+    return collision_share * extinction;
+}
+
+float passing_share(const Walk& walk, Segment& line, Interval<float> range) {
+    float share = 1;
+    for (const Medium& medium : walk.snapshot.media)
+        if (share > 0)
+            share *= ratio_transmittance(medium, line.rest, range, line.random, walk.results[line.walker.lane].steps);
+    return share;
 }
 
 void follow_fog(const Walk& walk, Segment& line) {

@@ -38,6 +38,8 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     tracer->fire = emissive_bricks(tracer->snapshot);
     take_fields(tracer->snapshot, settings.style, view.camera);
     tracer->finds_sky = finds_sky(tracer->snapshot);
+    if (std::ranges::any_of(tracer->snapshot.lights, [](const Light& light) { return light.area != nullptr; }))
+        for (const Medium& medium : tracer->snapshot.media) tracer->peaks.push_back(phase_peak(medium.optics.phase));
     tracer->has_emission = has_emission(*tracer);
     return [tracer](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*tracer, batch, results); };
 }

@@ -1,7 +1,7 @@
 // The walk: lines, the surfaces on them, and turns.
 #include "modes/path/tracer.h"
 
-#include "modes/path/vertex.h"
+#include "modes/path/faces.h"
 #include "scene/area_shape.h"
 #include "trace/lights/faces.h"
 #include "trace/mattes.h"
@@ -89,7 +89,7 @@ void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) 
     const vec3 origin = off_surface(surface.position, surface.face_normal, direction);
     const bool finds_sky = walk.tracer.finds_sky && is_lit(*walk.snapshot.environment, walk.snapshot, surface.instance);
     const float sky_scale = finds_sky ? walk.snapshot.environment->surface_scale : 0;
-    scatter(walk, line, {origin, direction}, surface.base_color, cosine / pi, sky_scale, line.walker.in_fog);
+    scatter(walk, line, {{origin, direction}, surface.base_color, cosine / pi, sky_scale}, line.walker.in_fog);
 }
 
 // Ambient light, and the environment's share of what was not found by aiming at it (balance heuristic).
@@ -173,6 +173,7 @@ void follow_lines(const Walk& walk) {
         for (size_t i = 0; i < lines.size(); ++i) {
             Segment& line = lines[i];
             line.layer = layer;
+            if (line.walker.peak > 0) meet_faces(walk, line);
             follow_fog(walk, line);
             if (faces[i] >= 0) {
                 meet_face(walk, line, walk.snapshot.lights[static_cast<size_t>(faces[i])]);
@@ -194,11 +195,15 @@ void follow_lines(const Walk& walk) {
 }
 }
 
-void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight light, bool in_fog) {
+void add_light(const Walk& walk, const Segment& line, vec3 radiance, size_t part, bool in_fog) {
     const size_t lane = line.walker.lane;
     const vec3 added = line.walker.throughput * radiance;
     (in_fog ? walk.results[lane].radiance : walk.results[lane].surface) += added;
-    if (in_fog && !walk.batch.parts.empty()) walk.batch.part(lane, walk.batch.index_of(light)) += added;
+    if (in_fog && !walk.batch.parts.empty()) walk.batch.part(lane, part) += added;
+}
+
+void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight light, bool in_fog) {
+    add_light(walk, line, radiance, walk.batch.parts.empty() ? 0 : walk.batch.index_of(light), in_fog);
 }
 
 EmissivePlace pick_fire(const Walk& walk, const Segment& line) {
@@ -213,11 +218,13 @@ void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, b
     if (max_component(connection.light) > 0) walk.scratch.connections.push_back(connection);
 }
 
-void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float density, float sky_scale, bool in_fog) {
-    const bool blind = walk.order + 1 >= walk.tracer.settings.orders && !walk.tracer.has_emission;
+void scatter(const Walk& walk, const Segment& line, const Turn& turn, bool in_fog) {
+    const bool looks = walk.tracer.has_emission || turn.peak > 0;
+    const bool blind = walk.order + 1 >= walk.tracer.settings.orders && !looks;
     PathVertex next = line.walker;
-    next.ray = ray, next.skip = 0, next.density = density, next.sky_scale = sky_scale, next.in_fog = in_fog;
-    next.throughput *= share;
+    next.ray = turn.ray, next.skip = 0, next.in_fog = in_fog;
+    next.density = turn.density, next.sky_scale = turn.sky_scale, next.peak = turn.peak;
+    next.throughput *= turn.share;
     const float brightness = max_component(next.throughput);
     if (blind || !(brightness > 0)) return;
     if (walk.order + 1 >= certain_orders && brightness < 1) {

@@ -22,6 +22,7 @@ struct PathTracer {
     ivec2 size{0};
     std::shared_ptr<const EmissiveTriangles> glow; // surfaces that paths aim at; null = none
     std::shared_ptr<const EmissiveBricks> fire; // of media that only emit, which the snapshot is without; null = none
+    std::vector<float> peaks;                   // of the media's phase functions, 1/sr; empty = no light has a face
     bool finds_sky = false;    // the environment by lines that leave the scene, too; else by aiming at it alone
     bool has_emission = false; // fog, surfaces or surroundings give off light that paths must find by themselves
 };

@@ -39,6 +39,7 @@ struct PathVertex {
     vec3 throughput{1};  // share of light that comes down the path
     float density = 0;   // chance per steradian of the line's direction; 0 at the eye
     float sky_scale = 0; // of the environment's light on what the line started from; 0 = it does not look for it
+    float peak = 0;      // of the phase function it started from, 1/sr, where that finds faces of lights; else 0
     bool in_fog = false; // the path's first event was in fog
     SamplePlace place{0, 0};
     uint32_t id = 0;
@@ -111,8 +112,13 @@ struct Walk {
     bool turns = true; // whether paths may scatter at the end of the current lines
 };
 
-// Adds light that comes down the line undimmed by what the line has met so far.
+// Adds light that comes down the line undimmed by what the line has met so far: other light, or that of a light of the
+// snapshot.
 void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight light, bool in_fog);
+void add_light(const Walk& walk, const Segment& line, vec3 radiance, size_t light, bool in_fog);
+
+// An estimate of the share of light that passes all fog between two distances of the current stretch.
+float passing_share(const Walk& walk, Segment& line, Interval<float> range);
 
 // Queues a connection that brings `light` down the line when nothing is in its way.
 void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog);
@@ -136,9 +142,15 @@ void gather_sky(const Walk& walk, Segment& line, vec3 point, vec3 face_normal, f
     queue(walk, line, connection, share(sky.direction) * sky.radiance * (scale / (sky.density + own)), in_fog);
 }
 
-// Starts the walker's next line with a share of what this one carries, unless roulette ends the path. `density`: chance
-// per steradian of the direction; `sky_scale`: of the environment's light there.
-void scatter(const Walk& walk, const Segment& line, Ray ray, vec3 share, float density, float sky_scale, bool in_fog);
+// Where a path turns: its next line, the share of this one's light that it brings, and what is said of PathVertex.
+struct Turn {
+    Ray ray;
+    vec3 share{1};
+    float density = 0, sky_scale = 0, peak = 0;
+};
+
+// Starts the walker's next line, unless roulette ends the path.
+void scatter(const Walk& walk, const Segment& line, const Turn& turn, bool in_fog);
 
 // Light scattered by the fog of the current stretch, from lights; then whether the path collides there and turns.
 void follow_fog(const Walk& walk, Segment& line);

@@ -1,5 +1,6 @@
 // Frames to be rendered to files: what is asked for, and what is decided for it. What comes out is a RenderReport.
 #pragma once
+#include "base/io/file_sequence.h"
 #include "modes/settings.h"
 #include "render/adaptive/planned_error.h"
 #include "render/frame/layers.h"
@@ -7,7 +8,6 @@
 #include "render/image/view_transform.h"
 #include "scene/load_options.h"
 #include "scene/shutter.h"
-#include "volume/vdb/sequence.h"
 
 #include <filesystem>
 #include <memory>

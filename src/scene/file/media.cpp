@@ -101,7 +101,7 @@ bool read_metadata(const std::filesystem::path& path, MediumSource& medium) {
 void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
     const Field file = field.member("file");
     with_place(file, [&] { medium.sequence = find_sequence(file.json->string, scene.file.parent_path()); });
-    medium.sequence.grid = field.json->string_or("grid", "");
+    medium.density_grid = field.json->string_or("grid", "");
     if (const Field sequence = field.member("sequence")) {
         medium.sequence.mode = sequence_mode_named(sequence.json->string_or("mode", "hold"));
         medium.sequence.offset = static_cast<int>(sequence.json->number_or("offset", 0));

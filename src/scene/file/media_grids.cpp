@@ -37,7 +37,6 @@ ValueMap value_map(const Field& field) {
 // A property given by a name or an object; from the medium's own file unless it names another.
 GridSource grid_source(const Field& field, const char* usual, const MediumSource& medium, Scene& scene) {
     GridSource source{medium.sequence, {}, {}};
-    source.sequence.grid.clear();
     if (field.json->kind == Json::Kind::string) {
         source.grids = {field.json->string};
         return source;
@@ -46,7 +45,7 @@ GridSource grid_source(const Field& field, const char* usual, const MediumSource
     source.map = value_map(field);
     if (const Field file = field.member("file"))
         with_place(file, [&] {
-            const VdbSequence other = find_sequence(file.json->string, scene.file.parent_path());
+            const FileSequence other = find_sequence(file.json->string, scene.file.parent_path());
             source.sequence.pattern = other.pattern, source.sequence.files = other.files;
         });
     return source;
@@ -54,10 +53,10 @@ GridSource grid_source(const Field& field, const char* usual, const MediumSource
 
 void read_density(const Field& field, const Field& density, MediumSource& medium, Scene& scene) {
     const GridSource source = grid_source(density, "", medium, scene);
-    const std::string own = medium.sequence.grid;
+    const std::string own = medium.density_grid;
     if (!source.grids[0].empty() && !own.empty()) refuse(field.member("grid"), "is said in \"grids\" as well");
     medium.sequence = source.sequence, medium.density_map = source.map;
-    medium.sequence.grid = source.grids[0].empty() ? own : source.grids[0];
+    medium.density_grid = source.grids[0].empty() ? own : source.grids[0];
 }
 
 VelocitySource velocity_source(const Field& field, const Field& velocity, const MediumSource& medium, Scene& scene) {

@@ -1,7 +1,7 @@
 // IES profiles and gobos of the lights of a frame.
 #pragma once
+#include "base/io/file_sequence.h"
 #include "trace/moment.h"
-#include "volume/vdb/sequence.h"
 
 #include "base/math.h"
 

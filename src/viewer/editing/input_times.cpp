@@ -16,7 +16,7 @@ std::vector<InputTime> input_times(const Scene& scene) {
     std::vector<std::filesystem::path> files;
     for (const InputFile& input : scene.inputs) files.push_back(input.path);
     for (const MediumSource& medium : scene.media)
-        for (const VdbSequence* sequence : volume_sequences(medium)) {
+        for (const FileSequence* sequence : volume_sequences(medium)) {
             if (sequence->files.empty()) files.push_back(sequence->pattern);
             for (const int number : sequence->files)
                 if (const auto file = sequence_file(*sequence, number - sequence->offset, MissingFrame::hold))

@@ -8,7 +8,7 @@ namespace tyndall {
 namespace {
 // The file that is held when a gap of a sequence is at the frame; nothing where there is no gap.
 std::optional<std::filesystem::path> held_file(const MediumSource& medium, int frame) {
-    for (const VdbSequence* sequence : volume_sequences(medium))
+    for (const FileSequence* sequence : volume_sequences(medium))
         if (!sequence_file(*sequence, frame, MissingFrame::skip))
             if (const auto held = sequence_file(*sequence, frame, MissingFrame::hold)) return held;
     return {};

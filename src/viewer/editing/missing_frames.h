@@ -1,6 +1,6 @@
 // Gaps in the volume files of a scene.
 #pragma once
-#include "volume/vdb/sequence.h"
+#include "base/io/file_sequence.h"
 
 #include <string>
 #include <vector>

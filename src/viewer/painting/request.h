@@ -1,9 +1,9 @@
 // What the interface asks for, and the pictures it gets.
 #pragma once
+#include "base/io/file_sequence.h"
 #include "modes/settings.h"
 #include "scene/camera.h"
 #include "viewer/painting/tone.h"
-#include "volume/vdb/sequence.h"
 
 #include <memory>
 #include <optional>

@@ -128,8 +128,8 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Scene& scene, co
     if (source != scene.media.end() && source->kind == MediumKind::vdb && !request.moving)
         if (const auto file = sequence_file(source->sequence, request.frame, request.missing)) {
             const auto written = std::filesystem::last_write_time(*file).time_since_epoch().count();
-            const std::string key = file->string() + " " + std::to_string(written) + " " + source->sequence.grid;
-            if (known.key != key) known = {key, file_facts(*file, source->sequence.grid)};
+            const std::string key = file->string() + " " + std::to_string(written) + " " + source->density_grid;
+            if (known.key != key) known = {key, file_facts(*file, source->density_grid)};
             facts = known.facts;
         }
     if (medium.density.kind == DensityKind::bricks) {

@@ -67,7 +67,7 @@ TEST(MediaGrids, AreReadAsTheyAreWritten) {
     ASSERT_TRUE(answer.loaded) << answer.message;
     const MediumSource& fire = answer.scene.media[0];
     EXPECT_EQ(fire.density_map(1), 0.5f);
-    EXPECT_EQ(fire.sequence.grid, "");
+    EXPECT_EQ(fire.density_grid, "");
     EXPECT_THAT(fire.albedo_grid->grids, ElementsAre("Cd"));
     EXPECT_THAT(fire.emission_grid->grids, ElementsAre("e.r", "e.g", "e.b"));
     EXPECT_EQ(fire.emission.at(0), vec3(1, 2, 3));

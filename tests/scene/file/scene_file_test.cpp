@@ -222,7 +222,7 @@ TEST(SceneFile, VolumesBringTheirOptics) {
     EXPECT_EQ(scene.media[0].sequence.offset, -3);
     EXPECT_EQ(scene.media[0].sequence.files, (std::vector<int>{2, 3}));
     EXPECT_EQ(scene.media[1].g.at(0), 0.1f);
-    EXPECT_EQ(scene.media[1].sequence.grid, "density");
+    EXPECT_EQ(scene.media[1].density_grid, "density");
     EXPECT_TRUE(scene.media[1].z_up && !scene.media[0].z_up);
     EXPECT_TRUE(has_warning(scene, "/media/2/file"));
     EXPECT_FALSE(has_warning(scene, "/media/0"));

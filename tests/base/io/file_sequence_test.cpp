@@ -1,17 +1,17 @@
-#include "volume/vdb/sequence.h"
-#include "volume/vdb/vdb_fixtures.h"
+#include "base/io/file_sequence.h"
+#include "support/expect.h"
+#include "support/scratch.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace tyndall {
 namespace {
-using namespace testing;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // Frames of the files shown at scene frames first..last; -1000 for no fog.
-std::vector<int> shown(const VdbSequence& sequence, int first, int last, MissingFrame missing = MissingFrame::error) {
+std::vector<int> shown(const FileSequence& sequence, int first, int last, MissingFrame missing = MissingFrame::error) {
     std::vector<int> result;
     for (int frame = first; frame <= last; ++frame) {
         const auto file = sequence_file(sequence, frame, missing);
@@ -24,14 +24,14 @@ class Sequence : public ::testing::Test {
 protected:
     const Scratch scratch;
 
-    VdbSequence made(const std::vector<std::string>& names, const std::string& pattern) {
+    FileSequence made(const std::vector<std::string>& names, const std::string& pattern) {
         for (const std::string& name : names) scratch.put(name, "x");
         return find_sequence(pattern, scratch.path());
     }
 };
 
 TEST_F(Sequence, OneFile) {
-    const VdbSequence sequence = made({"fog.vdb"}, "fog.vdb");
+    const FileSequence sequence = made({"fog.vdb"}, "fog.vdb");
     EXPECT_TRUE(sequence.files.empty());
     for (const int frame : {-5, 1, 1000})
         EXPECT_EQ(sequence_file(sequence, frame, MissingFrame::error), scratch.path() / "fog.vdb");
@@ -53,7 +53,7 @@ TEST_F(Sequence, EverySpellingOfTheNumber) {
 TEST_F(Sequence, InADirectoryBelow) {
     std::filesystem::create_directory(scratch.path() / "50%");
     scratch.put("50%/a.0007.vdb", "x");
-    const VdbSequence sequence = find_sequence("a.####.vdb", scratch.path() / "50%");
+    const FileSequence sequence = find_sequence("a.####.vdb", scratch.path() / "50%");
     EXPECT_EQ(sequence_file(sequence, 7, MissingFrame::error), scratch.path() / "50%" / "a.0007.vdb");
     EXPECT_EQ(find_sequence((scratch.path() / "50%" / "a.0007.vdb").string(), "/nowhere").files.size(), 0u);
 }
@@ -67,7 +67,7 @@ TEST_F(Sequence, NothingThere) {
 }
 
 TEST_F(Sequence, OutsideTheRange) {
-    VdbSequence sequence = made({"a.0003.vdb", "a.0004.vdb", "a.0005.vdb"}, "a.####.vdb");
+    FileSequence sequence = made({"a.0003.vdb", "a.0004.vdb", "a.0005.vdb"}, "a.####.vdb");
     EXPECT_THAT(shown(sequence, 1, 7), ElementsAre(3, 3, 3, 4, 5, 5, 5));
     sequence.mode = SequenceMode::clip;
     EXPECT_THAT(shown(sequence, 2, 6), ElementsAre(-1000, 3, 4, 5, -1000));
@@ -78,7 +78,7 @@ TEST_F(Sequence, OutsideTheRange) {
 }
 
 TEST_F(Sequence, OffsetIsAddedToTheFrame) {
-    VdbSequence sequence = made({"a.0103.vdb", "a.0104.vdb"}, "a.####.vdb");
+    FileSequence sequence = made({"a.0103.vdb", "a.0104.vdb"}, "a.####.vdb");
     sequence.offset = 100, sequence.mode = SequenceMode::clip;
     EXPECT_THAT(shown(sequence, 2, 5), ElementsAre(-1000, 103, 104, -1000));
     sequence.offset = INT32_MAX, sequence.mode = SequenceMode::loop;
@@ -86,7 +86,7 @@ TEST_F(Sequence, OffsetIsAddedToTheFrame) {
 }
 
 TEST_F(Sequence, OneFrameOnly) {
-    VdbSequence sequence = made({"a.0005.vdb"}, "a.####.vdb");
+    FileSequence sequence = made({"a.0005.vdb"}, "a.####.vdb");
     for (const SequenceMode mode : {SequenceMode::hold, SequenceMode::loop, SequenceMode::ping_pong}) {
         sequence.mode = mode;
         EXPECT_THAT(shown(sequence, 4, 6), ElementsAre(5, 5, 5));
@@ -94,7 +94,7 @@ TEST_F(Sequence, OneFrameOnly) {
 }
 
 TEST_F(Sequence, Gaps) {
-    VdbSequence sequence = made({"a.0001.vdb", "a.0002.vdb", "a.0005.vdb"}, "a.####.vdb");
+    FileSequence sequence = made({"a.0001.vdb", "a.0002.vdb", "a.0005.vdb"}, "a.####.vdb");
     EXPECT_THAT(shown(sequence, 1, 5, MissingFrame::hold), ElementsAre(1, 2, 2, 2, 5));
     EXPECT_THAT(shown(sequence, 1, 5, MissingFrame::skip), ElementsAre(1, 2, -1000, -1000, 5));
     const Error error = error_of([&] { shown(sequence, 1, 5); });

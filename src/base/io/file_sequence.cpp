@@ -1,4 +1,4 @@
-#include "volume/vdb/sequence.h"
+#include "base/io/file_sequence.h"
 
 #include "base/error.h"
 #include "base/io/file.h"
@@ -58,10 +58,10 @@ std::optional<int64_t> mapped_frame(int64_t frame, int64_t first, int64_t last, 
 }
 }
 
-VdbSequence find_sequence(const std::string& pattern, const fs::path& base_directory) {
+FileSequence find_sequence(const std::string& pattern, const fs::path& base_directory) {
     const fs::path path = base_directory / pattern;
     const std::string name = path.filename().string();
-    VdbSequence sequence;
+    FileSequence sequence;
     sequence.pattern = path.string();
     if (!has_frame_token(name)) { // a directory may be called anything
         check_readable(path);
@@ -82,7 +82,7 @@ VdbSequence find_sequence(const std::string& pattern, const fs::path& base_direc
     return sequence;
 }
 
-std::optional<fs::path> sequence_file(const VdbSequence& sequence, int frame, MissingFrame missing) {
+std::optional<fs::path> sequence_file(const FileSequence& sequence, int frame, MissingFrame missing) {
     if (sequence.files.empty()) return fs::path(sequence.pattern);
     const int64_t wanted = int64_t{frame} + sequence.offset;
     const auto mapped = mapped_frame(wanted, sequence.files.front(), sequence.files.back(), sequence.mode);

@@ -1,0 +1,51 @@
+#include "modes/path/faces.h"
+
+#include "scene/area_shape.h"
+
+namespace tyndall {
+namespace {
+// As how many directions of a path a way that is aimed counts: the eye's lines have the best of 16 distances for it.
+// Beside a panel noise is then no more than without directions up to g = 0.8, and a third of it at 0.97.
+float aimed_count(int order) { return order == 0 ? 16 : 4; }
+
+// Whether the phase function is narrower than the face is wide from a point, roughly. Lines are shadowed by all
+// surfaces.
+bool finds_face(const Light& light, vec3 point, float peak) {
+    if (!light.area || !light.shadows || light.casters >= 0 || !(light.volume_scale > 0)) return false;
+    const vec3 offset = point - light.position;
+    const float area = face_area(*light.area), steradians = area / (glm::dot(offset, offset) + area / (2 * pi));
+    return peak * steradians > 1;
+}
+}
+
+float peak_for_faces(const PathTracer& tracer, const FogPoint& fog) {
+    if (tracer.peaks.empty()) return 0;
+    float peak = 0;
+    for (size_t m = 0; m < fog.extinction.size(); ++m) peak += fog.extinction[m] / fog.total * tracer.peaks[m];
+    const auto finds = [&](const Light& light) { return finds_face(light, fog.position, peak); };
+    return std::ranges::any_of(tracer.snapshot.lights, finds) ? peak : 0;
+}
+
+float aimed_share(const Walk& walk, const FogPoint& fog, const Connection& connection, float peak, float cosine) {
+    if (!(peak > 0)) return 1;
+    const Light& light = walk.snapshot.lights[static_cast<size_t>(connection.light_index)];
+    if (!finds_face(light, connection.point, peak)) return 1;
+    const float aimed = aimed_count(walk.order);
+    return aimed / (aimed + connection.steradians * fog.density(walk.snapshot, cosine));
+}
+
+void meet_faces(const Walk& walk, Segment& line) {
+    const PathVertex& from = line.walker;
+    const float aimed = aimed_count(walk.order - 1);
+    for (size_t i = 0; i < walk.snapshot.lights.size() && line.through > 0; ++i) {
+        const Light& light = walk.snapshot.lights[i];
+        if (!finds_face(light, from.ray.origin, from.peak)) continue;
+        const float away = area_hit(*light.area, {from.ray.origin, from.ray.direction, infinity});
+        if (away == infinity || !(away > line.travelled && away <= line.travelled + line.end)) continue;
+        const float own = from.density * area_steradians(*light.area, from.ray.origin, from.ray.direction, away);
+        const vec3 radiance = radiance_of(light) * face_picture(*light.area, from.ray.at(away)) * light.volume_scale;
+        const float share = line.through * passing_share(walk, line, {0, away - line.travelled});
+        add_light(walk, line, radiance * (share * own / (aimed + own)), i, from.in_fog);
+    }
+}
+}
