@@ -5,6 +5,7 @@
 #include "trace/fog.h"
 #include "trace/fog_motion.h"
 #include "trace/moment.h"
+#include "trace/shadows/cached_shadows.h"
 
 #include <algorithm>
 #include <bit>
@@ -20,7 +21,6 @@ constexpr int fewest_moments = 4; // of what changes at all
 // volumes, and what a mode that keeps pictures has of these from each point of the light and in tiles of the picture.
 constexpr double max_bytes = 8.0 * (1 << 30), bytes_per_triangle = 200, bytes_of_grid = 8 << 20;
 constexpr double bytes_per_pixel = 16, bytes_per_beam_pixel = 17;
-constexpr double max_bytes_of_volumes = 1 << 30; // beyond, none are kept: has_room_for_views()
 
 using Points = std::vector<vec3>;
 
@@ -162,8 +162,8 @@ template<class Counts> double count_triangles(const Scene& scene, const Counts& 
     return static_cast<double>(triangles);
 }
 
-// How many times a light's shadow volumes are kept, at most.
-int kept_volumes(const LightSource& light, double seconds, bool keeps_pictures) {
+// How many times a light's shadow volumes are in memory, at most: by themselves and as cameras see them.
+int copies_of_volumes(const LightSource& light, double seconds, bool keeps_pictures) {
     if (!keeps_pictures) return 1;
     return light.radius.at(seconds) > 0 ? 5 : 2;
 }
@@ -182,10 +182,10 @@ double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool e
         if (!anew && moving == 0) continue;
         const float cone = has_cone(light) ? light.outer_cone.at(seconds) : pi;
         const double share = cone < pi / 4 ? std::tan(cone) : 1; // a beam meets fewer surfaces and pixels
-        volumes += share * kept_volumes(light, seconds, keeps_pictures) * bytes_per_triangle * all;
+        volumes += share * copies_of_volumes(light, seconds, keeps_pictures) * bytes_per_shadow_triangle * all;
         if (keeps_pictures) bytes += share * bytes_per_beam_pixel * pixels;
     }
-    return bytes + (volumes <= max_bytes_of_volumes ? volumes : 0);
+    return bytes + (volumes <= max_bytes_of_shadows ? volumes : 0); // beyond, shadows are found in other ways
 }
 }
 

@@ -79,7 +79,7 @@ Camera tile_camera(const FroxelGrid& grid) {
 // Which lights rays are to follow themselves. Amortised filling lights few of the froxels anew, beams all of them.
 void set_beams(const FroxelGrid& grid, FroxelScene& scene) {
     if (scene.settings.visibility == FroxelVisibility::intervals)
-        scene.keeps_lamps = has_room_for_views(
+        scene.lamp_views_fit = has_room_for_views(
             scene.snapshot, [](const Light& light) { return is_distant(light) ? 0 : lamp_points(light); });
     for (size_t i = 0; i < scene.snapshot.lights.size(); ++i) {
         scene.nears.push_back(scene.settings.amortise ? NearLight{} : near_light(scene, grid, i));
@@ -100,7 +100,7 @@ void set_shadows(FroxelFrame& frame, FroxelStatics& statics) {
         const Light& light = scene.snapshot.lights[static_cast<size_t>(i)];
         const auto& casters = shadow_casters(light, scene.snapshot);
         if (!casters) return;
-        if ((is_soft(light) && spread) || (!is_distant(light) && !scene.keeps_lamps)) {
+        if ((is_soft(light) && spread) || (!is_distant(light) && !scene.lamp_views_fit)) {
             scene.slices[static_cast<size_t>(i)] = &casters->shadow_slices();
             return;
         }

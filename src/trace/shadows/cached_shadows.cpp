@@ -40,12 +40,11 @@ std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snaps
 }
 
 bool has_room_for_views(const Snapshot& snapshot, const std::function<size_t(const Light&)>& views) {
-    constexpr size_t bytes_per_triangle = 200, most = size_t{1} << 30;
     size_t triangles = 0;
     for (const Light& light : snapshot.lights)
         if (const size_t count = shadow_casters(light, snapshot) ? views(light) : 0)
             triangles += count * cached_shadow_mesh(snapshot, light)->triangles.size();
-    return triangles * bytes_per_triangle <= most;
+    return triangles * bytes_per_shadow_triangle <= max_bytes_of_shadows;
 }
 
 std::shared_ptr<const ShadowView> cached_shadow_view(const Snapshot& snapshot, const Light& light, const View& view,

@@ -19,8 +19,10 @@ std::shared_ptr<const ShadowMesh> cached_shadow_mesh(const Snapshot& snapshot, c
 std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light,
                                                            dvec3 off = dvec3(0));
 
-// Whether there is room for the shadows of all lights as cameras see them, a gigabyte; `views`: how many of a light are
-// wanted.
+// What a triangle takes in the shadow volumes of a light, and in each view of them; and what those of all lights may.
+inline constexpr size_t bytes_per_shadow_triangle = 200, max_bytes_of_shadows = size_t{1} << 30;
+
+// Whether the shadows of all lights as cameras see them fit in that; `views`: how many of a light are wanted.
 bool has_room_for_views(const Snapshot& snapshot, const std::function<size_t(const Light&)>& views);
 
 // The same as the view's camera sees them; see view_from().

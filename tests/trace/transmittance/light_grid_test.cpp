@@ -96,6 +96,19 @@ std::vector<vec3> points_in_fog(const std::function<bool(vec3)>& wanted) {
     return points;
 }
 
+// A spot over the fog that aims at its middle, and points of the fog in its beam.
+Light spot_above(float half_angle) {
+    Light light;
+    light.kind = LightKind::spot, light.outer_cone = half_angle;
+    light.position = vec3(side / 2, 1.6f * side, side / 3);
+    light.direction = glm::normalize(vec3(side / 2) - light.position);
+    return light;
+}
+std::vector<vec3> points_in_beam(const Light& light) {
+    return points_in_fog(
+        [&](vec3 p) { return dot(glm::normalize(p - light.position), light.direction) > std::cos(light.outer_cone); });
+}
+
 TEST(LightGrid, SunIsAccurate) {
     Light light;
     light.kind = LightKind::sun;
@@ -105,16 +118,9 @@ TEST(LightGrid, SunIsAccurate) {
 }
 
 TEST(LightGrid, SpotIsAccurate) {
-    Light light;
-    light.kind = LightKind::spot;
-    light.position = vec3(side / 2, 1.6f * side, side / 3);
-    light.direction = glm::normalize(vec3(side / 2) - light.position);
-    light.outer_cone = 0.3f;
-    const auto in_cone = [&](vec3 p) {
-        return dot(glm::normalize(p - light.position), light.direction) > std::cos(light.outer_cone);
-    };
+    const Light light = spot_above(0.3f);
     // Cells of a voxel at the middle of the fog, 1.1 sides away.
-    expect_accuracy(light, points_in_fog(in_cone), 2 * std::tan(0.3f) * 1.1f * side, {0.004, 0.014, 0.04}, "spot");
+    expect_accuracy(light, points_in_beam(light), 2 * std::tan(0.3f) * 1.1f * side, {0.004, 0.014, 0.04}, "spot");
 }
 
 TEST(LightGrid, PointInsideTheFogIsAccurate) {
@@ -132,15 +138,8 @@ TEST(LightGrid, PointBesideTheFogIsAccurate) {
 
 // A beam a voxel wide at the fog asks for no more cells than voxels, however fine it may.
 TEST(LightGrid, NarrowBeamsNeedNoCellsFinerThanVoxels) {
-    Light light;
-    light.kind = LightKind::spot;
-    light.position = vec3(side / 2, 1.6f * side, side / 3);
-    light.direction = glm::normalize(vec3(side / 2) - light.position);
-    light.outer_cone = 0.02f;
-    const auto in_cone = [&](vec3 p) {
-        return dot(glm::normalize(p - light.position), light.direction) > std::cos(light.outer_cone);
-    };
-    expect_accuracy(light, points_in_fog(in_cone), 256, {0.004, 0.004, 0.004}, "beam");
+    Light light = spot_above(0.02f);
+    expect_accuracy(light, points_in_beam(light), 256, {0.004, 0.004, 0.004}, "beam");
     const Medium* const fog[] = {&noise_fog()};
     // Some 150 voxels away it is 6 voxels wide or 0.6; cells are up to 9 % finer than wanted, and both edges have
     // corners.

@@ -69,7 +69,7 @@ namespace tyndall {
 bool has_exact_shadows(const FroxelScene& scene, const Light& light) {
     if (!shadow_casters(light, scene.snapshot) || scene.settings.visibility == FroxelVisibility::off) return true;
     const bool spread = is_soft(light) && scene.settings.shadow_rays > 1;
-    return scene.settings.visibility == FroxelVisibility::intervals && !spread && scene.keeps_lamps;
+    return scene.settings.visibility == FroxelVisibility::intervals && !spread && scene.lamp_views_fit;
 }
 
 namespace {

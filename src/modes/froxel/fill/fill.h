@@ -32,7 +32,7 @@ struct FroxelScene {
     std::vector<const ShadowSlices*> slices; // null where there are none; the snapshot's
     // Of each light that rays find the shadows of by themselves, its shadows as they see them; else empty.
     std::vector<LampViews> pixel_views;
-    bool keeps_lamps = true;                    // whether there is room for those
+    bool lamp_views_fit = true;                 // whether there is room for those
     float pixel_margin = 0;                     // how far a ray may stray from its pixel, pixels
     std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
 
