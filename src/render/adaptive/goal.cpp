@@ -32,10 +32,14 @@ bool is_undecided(const SquaredError& error, double wanted) {
     return error.bound > wanted && 2 * error.value - error.bound <= wanted;
 }
 
-// Shows more of what is undecided, by more samples or by more tiles; false where there is nothing more to see.
-bool grow_while_possible(Pilot& pilot, bool by_noise) {
+// Work of following the truth through more tiles, or as often again.
+double work_to_grow(const Pilot& pilot, bool by_noise) { return pilot.cost.work / (by_noise ? 1 : pilot.drawings); }
+
+// Shows more of what is undecided, by more samples or by more tiles; false where that takes more work than it may save,
+// or there is nothing more to see.
+bool grow_for(double saving, Pilot& pilot, bool by_noise) {
     if (!pilot.can_grow(by_noise)) by_noise = !by_noise;
-    if (!pilot.can_grow(by_noise)) return false;
+    if (!pilot.can_grow(by_noise) || work_to_grow(pilot, by_noise) > saving) return false;
     grow(pilot, by_noise);
     return true;
 }
@@ -197,8 +201,9 @@ struct Entry {
     }
 };
 
-// The candidate with least work. The pilot grows as long as another one may save more than that costs, or shows that
-// none leaves room for noise: then finer ones are measured too.
+// The candidate with least work. The pilot grows as long as another one may save more than that costs, or none seems to
+// get there and too little was seen to tell; where it shows that none leaves room for noise, finer ones are measured
+// too.
 Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilot,
                       const std::shared_ptr<const Scout>& scout) {
     const double error = chooser.goal.error;
@@ -221,11 +226,13 @@ Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilo
         }
         const Entry& best = *std::ranges::min_element(std::ranges::reverse_view(entries), {}, &Entry::sure);
         const Entry& hoped = *std::ranges::min_element(entries, {}, &Entry::hoped);
-        const bool by_noise = hoped.choice.measured.integrator.by_noise;
-        const double cost = pilot->cost.work / (by_noise ? 1 : pilot->drawings);
-        if (!chooser.systematic || !pilot->can_grow(by_noise) || !(best.sure - hoped.hoped > cost)) return best.choice;
+        const bool hopeless = hoped.hoped == infinity;
+        const SquaredError& doubtful = (hopeless ? best : hoped).choice.measured.integrator;
+        const bool worth = hopeless ? is_undecided(doubtful, error * error)
+                                    : best.sure - hoped.hoped > work_to_grow(*pilot, doubtful.by_noise);
+        if (!chooser.systematic || !worth || !pilot->can_grow(doubtful.by_noise)) return best.choice;
         const double least = best.sure;
-        grow(*pilot, by_noise);
+        grow(*pilot, doubtful.by_noise);
         for (Entry& entry : entries) {
             if (entry.hoped > least) continue; // as long as the best is as good
             entry.choice = chooser.choice(entry.candidate, entry.look, pilot, &*before, scout);
@@ -294,25 +301,30 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     pilot->stop = {}; // it refers to this call
     Choice result = choice;
     Look look{mode, choice.candidate.settings, choice.measured.prepared};
-    Measured measured = measure(*pilot, look, goal.clock);
+    SquaredError& integrator = result.measured.integrator;
+    const Measured first = measure(*pilot, look, goal.clock);
+    integrator = first.integrator;
+    const auto work_lacking = [&] { return result.work_to(goal.error) - samples * result.measured.sample_work; };
+    // Of what more samples would take; where that is unknown, of what those there are took.
+    const auto saving = [&] { return choice.scout ? work_lacking() : samples * first.sample_work; };
+    const auto is_in_time = [&] { return goal.seconds == 0 || goal.clock() + pilot->cost.seconds < until; };
     const double left = goal.error * goal.error - noise.bound * noise.bound;
-    while (left > 0 && is_undecided(measured.integrator, left) && (goal.seconds == 0 || goal.clock() < until) &&
-           grow_while_possible(*pilot, measured.integrator.by_noise))
-        measured = measure(*pilot, look, goal.clock);
-    result.measured.integrator = measured.integrator;
-    const double bound = std::hypot(std::sqrt(result.measured.integrator.bound), noise.bound);
+    while (left > 0 && is_undecided(integrator, left) && is_in_time() &&
+           grow_for(saving(), *pilot, integrator.by_noise))
+        integrator = measure(*pilot, look, goal.clock).integrator;
+    const double bound = std::hypot(std::sqrt(integrator.bound), noise.bound);
     if (bound <= goal.error || goal.error == 0 || goal.seconds > 0 || binds_candidates(mode, settings, goal.quality))
         return result;
     if (rivals) return result; // the main mode is likely to be quicker than a finer one
 
     // More samples of this one, of which some are there, or a finer one from nothing.
-    double least = result.work_to(goal.error) - samples * result.measured.sample_work;
+    double least = work_lacking();
     auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
     while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
         Look of_finer = chooser.look_at(*next, choice.scout.get());
         Choice finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
         while (is_undecided(finer.measured.integrator, std::pow(integrator_share * goal.error, 2)) &&
-               grow_while_possible(*pilot, finer.measured.integrator.by_noise))
+               grow_for(least, *pilot, finer.measured.integrator.by_noise))
             finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
         const bool room = leaves_room(finer, goal.error);
         const double its_work = finer.work_to(goal.error);

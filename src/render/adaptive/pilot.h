@@ -14,7 +14,7 @@
 #include <span>
 
 namespace tyndall {
-inline constexpr int max_drawings = 4, max_passes = 8;
+inline constexpr int max_drawings = 4, max_passes = 256;
 // Of a tile: for both samples, for each of its pixels, colour and fog light.
 inline constexpr size_t pilot_values = 2 * 16 * 2;
 

@@ -131,13 +131,13 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
 namespace {
 // On tiles where an image shows that there may be some; no finer candidate is looked for.
 Integrator measured_integrator(const Choice& choice, double target, const Mode& mode, const View& view,
-                               const Snapshot& snapshot, const Layers& image, const Noise& noise, uint32_t salt,
-                               const FrameOptions& options) {
+                               const Snapshot& snapshot, const Layers& image, const Noise& noise, double samples,
+                               uint32_t salt, const FrameOptions& options) {
     Goal goal{target, infinity, Quality::preview};
     goal.clock = steady_seconds;
     const Settings& settings = choice.candidate.settings;
-    const Choice after =
-        checked(choice, image, noise, 1, infinity, mode, even_frame(view), snapshot, settings, goal, salt, options);
+    const Choice after = checked(choice, image, noise, samples, infinity, mode, even_frame(view), snapshot, settings,
+                                 goal, salt, options);
     const SquaredError& error = after.measured.integrator;
     return {{std::sqrt(error.value), std::sqrt(error.bound)}, choice.candidate.name, settings};
 }
@@ -167,7 +167,7 @@ PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& sn
         FrameStats stats;
         image = render_frame(mode, few, snapshot, settings, options, stats);
     }
-    error.integrator = measured_integrator(choice_of("as set", settings, {}), 0, mode, view, snapshot, image, {},
+    error.integrator = measured_integrator(choice_of("as set", settings, {}), 0, mode, view, snapshot, image, {}, 1,
                                            image_check, options);
     error.moments = moments_of_frame(mode, view, snapshot, settings, nullptr, image, 0, options);
     return error;
@@ -181,8 +181,9 @@ void judge_planned(const PlannedError& planned, const Mode& mode, const View& vi
     if (planned.integrator) stats.integrator = planned.integrator;
     if (!planned.is_checked()) return;
     const Integrator& before = *planned.integrator;
-    stats.integrator = measured_integrator(choice_of(before.candidate, settings, before.error), planned.target, mode,
-                                           view, snapshot, image, *stats.noise, image_check, without_report(options));
+    stats.integrator =
+        measured_integrator(choice_of(before.candidate, settings, before.error), planned.target, mode, view, snapshot,
+                            image, *stats.noise, stats.samples, image_check, without_report(options));
 }
 
 double groups_lacking(const PlannedError& planned, const FrameStats& stats, int groups) {

@@ -59,12 +59,15 @@ SquaredError moments_error(const Mode& mode, const View& view, const Snapshot& s
                            const FrameOptions& options) {
     constexpr double small = 0.15;     // beside the error asked for: it takes a hundredth of its square
     constexpr size_t few_moments = 32; // more of them leave little, and every tile is followed through all
+    constexpr int many_passes = 8;     // likewise
     Pilot pilot = make_pilot(mode, view, snapshot, nullptr, chances, moments_salt, options);
     Moments moments = looks_at(mode, view, snapshot, settings, prepared);
     while (true) {
         const SquaredError found = compare(pilot, moments);
         const double enough = std::max(2 * found.value, small * small * error * error);
-        if (once || moments.looks.size() > few_moments || found.bound <= enough || !pilot.can_grow(found.by_noise))
+        const bool enough_passes = found.by_noise && pilot.passes >= many_passes;
+        if (once || moments.looks.size() > few_moments || found.bound <= enough || enough_passes ||
+            !pilot.can_grow(found.by_noise))
             return found;
         grow(pilot, found.by_noise);
     }

@@ -257,6 +257,32 @@ TEST(Pilot, AChoiceGetsToTheErrorWhereAFinerCandidateDoes) {
     EXPECT_LT(choice.samples_to(goal.error), infinity);
 }
 
+namespace {
+// As the march on the average; a ray is 70 % off.
+ScatterFunction prepare_flickering(const View& view, const Snapshot& snapshot, const Settings& settings,
+                                   History* history) {
+    const ScatterFunction right = main_mode().prepare(view, snapshot, settings, history);
+    return [right](const RayBatch& batch, std::span<Scatter> results) {
+        right(batch, results);
+        for (size_t i = 0; i < results.size(); ++i) results[i].radiance *= hash(batch.ids[i], 1u) % 2 ? 1.7f : 0.3f;
+    };
+}
+}
+
+// Many samples are to come: looking longer at what they do not remove takes less than what that would take of the
+// error asked for.
+TEST(Pilot, GrowsUntilItsOwnNoiseLeavesTheErrorToTheImage) {
+    Mode mode = main_mode();
+    mode.prepare = prepare_flickering, mode.name = "flickering"; // nothing it does counts as free of error
+    const View view = view_of({160, 90});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {sun_light({0, -1, -0.2f})});
+    const Goal goal{0.05, 0, Quality::preview, steady_seconds};
+    const Choice choice = choose(mode, view, snapshot, settings_for(Quality::preview), goal, 0, plain);
+    EXPECT_GT(choice.pilot->passes, 8);
+    EXPECT_GT(noise_target(choice, goal.error), 0.8 * goal.error);
+    EXPECT_LT(choice.pilot->cost.work, 0.5 * choice.work_to(goal.error));
+}
+
 // A frame that glows, with settings of another that did not: it is held against its glow, and gets it back.
 TEST(Goal, AFrameIsHeldAgainstTermsThatAnotherDidNotNeed) {
     Medium fog = homogeneous_medium(0.1f, room);
