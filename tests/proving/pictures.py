@@ -91,6 +91,10 @@ class Truth:
     bound: float  # that its own error is surely below
     seconds: float = 0  # of processors
 
+    def size(self):
+        height, width, _ = self.layers["beauty"].shape
+        return width, height
+
     def error(self):
         """Of the truth itself, as of pictures."""
         return error_of(self.layers, self.variance)

@@ -24,6 +24,7 @@ from truths import find_truth
 
 SOURCE = pathlib.Path(__file__).parents[2]
 ATTEMPTS = 6
+SMALLEST = 96, 54  # of the sizes that are drawn
 SLACK = 1.05  # of the error asked for
 TRUTH_SHARE = 0.2  # of that, at most, is what the truth is off by
 LADDER = [("draft", 1), ("draft", 2), ("draft", 4), ("preview", 4), ("preview", 8), ("preview", 16), ("final", 16), ("final", 32),
@@ -32,25 +33,29 @@ LADDER = [("draft", 1), ("draft", 2), ("draft", 4), ("preview", 4), ("preview", 
 
 
 def scene_with_truth(seed, folder, wanted, options):
-    """The first drawing of a seed whose truth can be had with one of the errors wanted: scene file, frame, truth and how many
-    drawings went before. Truths are kept in a folder, where there is one."""
+    """The first drawing of a seed that a truth with one of the errors wanted can be found for, in the size drawn or else in the
+    smallest: scene file, frame, truth and how many drawings went before. Truths are kept in a folder, where there is one."""
     families = AUTHORED if getattr(options, "authored", False) else FAMILIES
     program, known = options.program, options.truths / f"{seed}.npz" if options.truths else None
+
+    def written(drawing, size, place):
+        return write_scene(drawing, size, place, program)
+
     if known and known.exists():
         truth, attempt = load_truth(known)
-        drawn, size = draw(seed, attempt, families)
-        return write_scene(drawn, options.size or size, folder / f"{seed}.{attempt}", program), drawn.frame, truth, attempt
+        drawn, _ = draw(seed, attempt, families)
+        return written(drawn, truth.size(), folder / f"{seed}.{attempt}"), drawn.frame, truth, attempt
     for attempt in range(ATTEMPTS):
-        drawn, size = draw(seed, attempt, families)
-        size = options.size or size
-        place = folder / f"{seed}.{attempt}"
-        scene = write_scene(drawn, size, place, program)
-        plain = write_scene(drawn.plain, size, place / "plain", program) if drawn.plain else scene
-        truth = find_truth(program, plain, size, drawn.frame, place, wanted, options.truth_seconds)
-        if truth:
-            if known:
-                save_truth(truth, attempt, known)
-            return scene, drawn.frame, truth, attempt
+        drawn, drawn_size = draw(seed, attempt, families)
+        for size in [options.size] if options.size else dict.fromkeys([drawn_size, SMALLEST]):
+            place = folder / f"{seed}.{attempt}.{size[0]}"
+            scene = written(drawn, size, place)
+            plain = written(drawn.plain, size, place / "plain") if drawn.plain else scene
+            truth = find_truth(program, plain, size, drawn.frame, place, wanted, options.truth_seconds)
+            if truth:
+                if known:
+                    save_truth(truth, attempt, known)
+                return scene, drawn.frame, truth, attempt
     return None, 1, None, ATTEMPTS
 
 
