@@ -167,7 +167,7 @@ double begin_with_scout(TargetRounds& rounds, Layers& result, FrameStats& stats)
             needed = scout_samples * std::pow(stats.noise->bound / rounds.noise_target(), 2 / rounds.power());
         if (rounds.goal.seconds > 0) needed = std::min(needed, rounds.left() / rounds.work_seconds);
         rounds.done = 0, rounds.freedom = 0, rounds.expected = needed;
-        return std::clamp(std::ceil(needed / batches) * batches, batches, 1.0 * max_target_samples);
+        return std::clamp(std::ceil(needed / batches) * batches, batches, max_first_samples);
     }
     return next_round(rounds, stats);
 }

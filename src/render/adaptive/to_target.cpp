@@ -14,6 +14,7 @@ namespace tyndall {
 namespace {
 constexpr double max_check_share = 0.2; // of the seconds there are
 constexpr double longest_seconds = 600; // where none are given, and an error is far
+constexpr double soon = 2;              // seconds: a forecast may wait for what so short a round shows
 
 TargetRounds rounds_of(const Mode& mode, const View& view, Goal& goal) {
     TargetRounds rounds{mode, view, goal, goal.clock(), {}};
@@ -169,7 +170,9 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     for (uint32_t check = 1; check <= max_checks; ++check) {
         const bool scouted = measured && rounds.choice->scout;
         const double work = scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds);
-        if (goal.error > 0 && has_integrator(mode)) make_forecast(seconds_ahead(rounds, work), rounds, options, stats);
+        const double ahead = seconds_ahead(rounds, work);
+        const bool wait = ahead < infinity && work * rounds.work_seconds < soon && stats.forecast_seconds == 0;
+        if (goal.error > 0 && has_integrator(mode) && !wait) make_forecast(ahead, rounds, options, stats);
         render_rounds(rounds, rendering, work, result, stats, round);
         if (!has_integrator(mode) || (goal.seconds > 0 && rounds.check_seconds == 0)) break;
 
