@@ -33,10 +33,11 @@ void append_term_rows(std::vector<SettingRow>& rows) {
                               "looked up in a grid before each light, froxel = in one before the camera (march and "
                               "froxel; others take grid), marched = exact at every point, average = alike everywhere",
                               TYNDALL_FIELD(terms.light)));
-    rows.push_back(number_row("terms.light_resolution", "cells", 4, 1024,
-                              "cells across the fog in the light's grid, none finer than half a voxel; with froxel, "
-                              "across the image and in depth",
-                              TYNDALL_FIELD(terms.light_resolution)));
+    rows.push_back(
+        number_row("terms.light_resolution", "cells", 4, 1024,
+                   "cells across the fog in the light's grid, none finer than half a voxel, or an eighth from 256 on; "
+                   "with froxel, across the image and in depth",
+                   TYNDALL_FIELD(terms.light_resolution)));
     rows.push_back(number_row("terms.light_points", "", 1, 256,
                               "points of a soft light that shadows are asked for, by each ray (intervals, exact) or "
                               "step (rays) of march and by each sample of a surface",

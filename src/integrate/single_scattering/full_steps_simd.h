@@ -50,7 +50,7 @@ void add_full_steps(Packet& packet, size_t index) {
     store(radiance.x, rgb[0]), store(radiance.y, rgb[1]), store(radiance.z, rgb[2]), store(asked, counts);
     for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
         packet.radiance[i] += color * vec3(rgb[0][i], rgb[1][i], rgb[2][i]);
-        packet.asked[i] += static_cast<int>(counts[i]);
+        packet.asked[i] += static_cast<int>(counts[i]) * (1 + march_work(frame.depths[index]));
     }
 }
 }

@@ -172,9 +172,10 @@ void add_nodes(Packet& packet, int light) {
                                               : glow(frame, light, position);
     alignas(64) float r[16], g[16], b[16];
     store(source.x * weight, r), store(source.y * weight, g), store(source.z * weight, b);
+    const int work = 1 + (light >= 0 ? march_work(frame.depths[static_cast<size_t>(light)]) : 0);
     for (int i = 0; i < nodes.count; ++i) {
         packet.radiance[nodes.ray[i]] += vec3(r[i], g[i], b[i]);
-        ++packet.asked[nodes.ray[i]];
+        packet.asked[nodes.ray[i]] += work;
     }
     nodes.count = 0;
 }

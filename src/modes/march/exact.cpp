@@ -13,7 +13,6 @@
 namespace tyndall {
 namespace {
 constexpr int nodes_per_part = 2;
-constexpr int march_evaluations = 8; // of fog, that following one grid to a light takes about as long as
 
 // A stretch from which a share of a light's points is seen.
 struct LitPart {
@@ -199,7 +198,7 @@ void add_pending(RayMarch& on, size_t light_index, Pending& pending, dvec3& sum)
     if (occluders && occluders->has_alpha()) add_alpha_shadows(on, along.point, pending, share);
     light_depths(on.frame.depths[light_index], pending.x, pending.y, pending.z, pending.active, depth);
     for (int i = 0; i < pending.count; ++i) sum += double(share[i]) * std::exp(-double(depth[i])) * pending.light[i];
-    on.nodes += pending.count * march_evaluations * static_cast<int>(on.frame.depths[light_index].marched.size());
+    on.nodes += pending.count * march_work(on.frame.depths[light_index]);
     pending.count = 0;
 }
 

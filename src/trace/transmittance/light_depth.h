@@ -91,6 +91,11 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
 void light_depths(const LightDepth& depth, const float* x, const float* y, const float* z, const int32_t* active,
                   float* optical_depth);
 
+// Evaluations of fog that marching it takes as long as, at one point.
+inline int march_work(const LightDepth& depth) {
+    return depth.froxels.empty() ? 8 * static_cast<int>(depth.marched.size()) : 0;
+}
+
 // The share of the brick media alone, exact for their trilinear densities: what `marched` adds to the closed forms.
 void marched_depths(const LightDepth& depth, const float* x, const float* y, const float* z, const int32_t* active,
                     float* optical_depth);

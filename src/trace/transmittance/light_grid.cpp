@@ -139,17 +139,19 @@ float view_angle(std::span<const Block> blocks, vec3 origin, vec3 axis) {
 // while the fog in it drifts and its bounds change a little from frame to frame.
 float stable_size(float cell, float unit) { return unit * std::exp2(0.25f * std::round(4 * std::log2(cell / unit))); }
 
-// The finest cells worth their memory, metres: depths hardly bend within a voxel.
+// The finest cells worth their memory, metres: depths hardly bend within a voxel, which counts where many cells are
+// asked for.
 struct FinestCell {
     float across = infinity, along = infinity;
 };
-FinestCell finest_cell(std::span<const Medium* const> media) {
+FinestCell finest_cell(std::span<const Medium* const> media, float cells) {
     float voxel = infinity;
     for (const Medium* medium : media) {
         const vec3 size = medium->density.bricks->voxel_size;
         voxel = std::min({voxel, size.x, size.y, size.z});
     }
-    return {0.5f * voxel, voxel};
+    const float across = voxel * std::clamp(32 / cells, 0.125f, 0.5f);
+    return {across, 2 * across};
 }
 
 // Where the volume's own coordinates begin: a place that does not move when bricks come and go.
@@ -189,7 +191,7 @@ void fit_sun(std::span<const Medium* const> media, std::span<const Block> blocks
     const Fit fit = tightest(media, light.direction, grid,
                              [&](const mat3& frame) { return fit_columns(blocks, frame, grid.position); });
     const vec3 extent = fit.high - fit.low;
-    const FinestCell finest = finest_cell(media);
+    const FinestCell finest = finest_cell(media, cells);
     const float across = stable_size(std::max(std::max(extent.x, extent.y) / cells, finest.across), voxel);
     set_size(fit, vec3(across, across, std::max(across, stable_size(finest.along, voxel))), grid);
 }
@@ -211,7 +213,7 @@ void fit_cone_grid(std::span<const Medium* const> media, std::span<const Block> 
     if (fit.empty()) return;
     const float distance = fit_distances(light, fit, grid);
     if (!(distance > 0)) return;
-    const FinestCell finest = finest_cell(media);
+    const FinestCell finest = finest_cell(media, cells);
     const float wide = std::max(fit.high.x - fit.low.x, fit.high.y - fit.low.y) / cells;
     const float width = stable_size(std::max(wide, finest.across / distance), 1);
     set_size(fit, vec3(width, width, stable_size(std::max(width * distance, finest.along), voxel)), grid);
@@ -230,7 +232,7 @@ void fit_octahedron(std::span<const Medium* const> media, std::span<const Block>
     }
     const float distance = fit_distances(light, fit, grid);
     if (!(distance > 0)) return;
-    const FinestCell finest = finest_cell(media);
+    const FinestCell finest = finest_cell(media, cells);
     const float length = distance * std::sqrt(pi); // metres on a side of 1
     const float width = 1 / std::ceil(std::min(cells * (2 / 3.0f), length / finest.across));
     set_size(fit, vec3(width, width, stable_size(std::max(width * length, finest.along), voxel)), grid);
