@@ -20,7 +20,7 @@ from authored import AUTHORED
 from families import FAMILIES, draw, family_of
 from pictures import error_against, load_truth, render, save_truth
 from scene_files import write_scene
-from truths import find_truth
+from truths import HOPE, find_truth
 
 SOURCE = pathlib.Path(__file__).parents[2]
 ATTEMPTS = 6
@@ -51,7 +51,8 @@ def scene_with_truth(seed, folder, wanted, options):
             place = folder / f"{seed}.{attempt}.{size[0]}"
             scene = written(drawn, size, place)
             plain = written(drawn.plain, size, place / "plain") if drawn.plain else scene
-            truth = find_truth(program, plain, size, drawn.frame, place, wanted, options.truth_seconds)
+            hope = HOPE if size in (options.size, SMALLEST) else 1
+            truth = find_truth(program, plain, size, drawn.frame, place, wanted, options.truth_seconds, hope)
             if truth:
                 if known:
                     save_truth(truth, attempt, known)

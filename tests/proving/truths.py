@@ -13,7 +13,7 @@ RUNS = 4  # independent pictures of a truth
 THREADS, MOST_SAMPLES = 2, 4096
 FEWEST_SAMPLES, FEWEST_DIFFERENCES = 4, 2  # a single one would be the centres of pixels
 STEP = 16   # variances fall by this factor at most at once: far from what is wanted, little is known
-HOPE = 4    # forecasts may be as many times too long
+HOPE = 4    # forecasts may be as many times too long, where there is nothing else to try
 FINER = 8   # times as many moments of motion blur as usual, at most
 MOST_MOMENTS = 64
 AIM = 0.85  # of the variance wanted
@@ -202,17 +202,17 @@ def steps(levels, scales, wanted):
         poor -= good
 
 
-def aim_of(costs, left):
+def aim_of(costs, left, hope):
     """Which error to go for, of those wanted and what each costs: the smallest that time is left for, or else one that may
     cost less than it seems."""
-    for most in (left, HOPE * left):
+    for most in (left, hope * left):
         within = [error for error, cost in sorted(costs.items()) if cost <= most]
         if within:
             return within[0] if most == left else within[-1]
     return None
 
 
-def find_truth(program, scene, size, frame, folder, wanted, seconds):
+def find_truth(program, scene, size, frame, folder, wanted, seconds, hope=HOPE):
     """The truth with an error that is surely at most one of those wanted, the smallest there is processor time for; None
     where that is none. Quick pictures, corrected by how far they are from better ones through the same few rays, and so on
     to exact ones. What is noisiest, a level or a window of one, takes most samples. What is known of the error comes from
@@ -235,7 +235,7 @@ def find_truth(program, scene, size, frame, folder, wanted, seconds):
             scales = {part: layers[layer].mean() for part, layer in zip(PARTS, LAYERS)}
             goals = {error: RUNS * AIM * error ** 2 / max(doubts.values()) for error in wanted if error < bound}
             aim = aim_of({error: sum(step[0] for step in steps(levels, scales, goal)) for error, goal in goals.items()},
-                         renderer.left)
+                         renderer.left, hope)
             if aim is None:
                 return best
             now = sum(level.spread(scales).mean() for level in levels)
