@@ -33,8 +33,8 @@ LADDER = [("draft", 1), ("draft", 2), ("draft", 4), ("preview", 4), ("preview", 
 
 
 def scene_with_truth(seed, folder, wanted, options):
-    """The first drawing of a seed that a truth with one of the errors wanted can be found for, in the size drawn or else in the
-    smallest: scene file, frame, truth and how many drawings went before. Truths are kept in a folder, where there is one."""
+    """The first drawing of a seed whose truth, in the size drawn or else in the smallest, is found with one of the errors wanted:
+    scene file, frame, truth and how many drawings went before. Truths are kept in a folder, where there is one."""
     families = AUTHORED if getattr(options, "authored", False) else FAMILIES
     program, known = options.program, options.truths / f"{seed}.npz" if options.truths else None
 
@@ -47,11 +47,12 @@ def scene_with_truth(seed, folder, wanted, options):
         return written(drawn, truth.size(), folder / f"{seed}.{attempt}"), drawn.frame, truth, attempt
     for attempt in range(ATTEMPTS):
         drawn, drawn_size = draw(seed, attempt, families)
-        for size in [options.size] if options.size else dict.fromkeys([drawn_size, SMALLEST]):
+        sizes = [options.size] if options.size else list(dict.fromkeys([drawn_size, SMALLEST]))
+        for size in sizes:
             place = folder / f"{seed}.{attempt}.{size[0]}"
             scene = written(drawn, size, place)
             plain = written(drawn.plain, size, place / "plain") if drawn.plain else scene
-            hope = HOPE if size in (options.size, SMALLEST) else 1
+            hope = HOPE if size == sizes[-1] else 1
             truth = find_truth(program, plain, size, drawn.frame, place, wanted, options.truth_seconds, hope)
             if truth:
                 if known:

@@ -59,7 +59,7 @@ SquaredError moments_error(const Mode& mode, const View& view, const Snapshot& s
                            const FrameOptions& options) {
     constexpr double small = 0.15;     // beside the error asked for: it takes a hundredth of its square
     constexpr size_t few_moments = 32; // more of them leave little, and every tile is followed through all
-    constexpr int many_passes = 8;     // likewise
+    constexpr int many_passes = 8;     // of which each follows every moment
     Pilot pilot = make_pilot(mode, view, snapshot, nullptr, chances, moments_salt, options);
     Moments moments = looks_at(mode, view, snapshot, settings, prepared);
     while (true) {

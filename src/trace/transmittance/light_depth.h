@@ -91,7 +91,7 @@ LightDepth make_light_depth(const Snapshot& snapshot, const Light& light, LightT
 void light_depths(const LightDepth& depth, const float* x, const float* y, const float* z, const int32_t* active,
                   float* optical_depth);
 
-// Evaluations of fog that marching it takes as long as, at one point.
+// What marching the fog between one point and the light costs, in evaluations of fog.
 inline int march_work(const LightDepth& depth) {
     return depth.froxels.empty() ? 8 * static_cast<int>(depth.marched.size()) : 0;
 }

@@ -9,7 +9,7 @@
 namespace tyndall {
 // A grid fitted to the brick media, without its depths; size 0 when the light reaches none of them. `resolution`: cells
 // across the longer side of the fog as the light sees it; along the light they are about as long as wide. None are
-// finer across than half a voxel, from resolution 64 to 256 on down to an eighth, nor than twice that along.
+// finer across than half a voxel at a resolution up to 64, an eighth from 256 on; along, than twice that.
 LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& light, int resolution);
 
 // Integrates the media along the columns of a fitted grid, in parallel over columns.

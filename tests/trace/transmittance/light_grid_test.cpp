@@ -137,7 +137,7 @@ TEST(LightGrid, PointBesideTheFogIsAccurate) {
 }
 
 // A beam a voxel wide at the fog asks for few more cells than voxels, but for more where more are asked for.
-TEST(LightGrid, NarrowBeamsNeedNoCellsFinerThanVoxels) {
+TEST(LightGrid, NarrowBeamsNeedFewCellsFinerThanVoxels) {
     Light light = spot_above(0.02f);
     expect_accuracy(light, points_in_beam(light), 256, {0.004, 0.004, 0.004}, "beam");
     const Medium* const fog[] = {&noise_fog()};
