@@ -1,71 +1,12 @@
 // Shadow volumes against triangles counted one by one, and against the slices of
 // trace/shadows/intervals/shadow_slices.h.
-#include "support/random_points.h"
-#include "trace/shadows/shadow_rays.h"
-#include "trace/shadows/volumes/shadow_view.h"
-#include "trace/small_scenes.h"
-
 #include "scene/light.h"
-#include "scene/light_reach.h"
-#include "trace/shadows/intervals/shadow_slices.h"
+#include "trace/shadows/volumes/shadow_stage.h"
 
 #include <gtest/gtest.h>
 
 namespace tyndall::test {
 namespace {
-struct Stage {
-    std::vector<ShadowTriangle> triangles;
-    ShadowSlices slices;
-    ShadowVolumes volumes;
-    LightPoint light;
-};
-
-std::vector<ShadowTriangle> triangles_of(const std::vector<Mesh>& meshes) {
-    std::vector<ShadowTriangle> result;
-    for (const Mesh& mesh : meshes)
-        for (const glm::uvec3 t : mesh.triangles)
-            result.push_back({{mesh.positions[t.x], mesh.positions[t.y], mesh.positions[t.z]}, false});
-    return result;
-}
-
-Stage stage_of(std::vector<ShadowTriangle> triangles, const LightPoint& light) {
-    const auto mesh = std::make_shared<const ShadowMesh>(make_shadow_mesh(triangles));
-    return {triangles, make_shadow_slices(triangles), make_shadow_volumes(mesh, light), light};
-}
-Stage stage_of(const std::vector<Mesh>& meshes, const LightPoint& light) {
-    return stage_of(triangles_of(meshes), light);
-}
-
-constexpr int lane = 5; // of the rays asked about
-
-struct Counted {
-    int dark = 0;
-    std::vector<ShadowCrossing> crossings;
-
-    int at(double t) const {
-        float count = static_cast<float>(dark);
-        for (const ShadowCrossing& crossing : crossings) count += crossing.t[lane] <= t ? crossing.change[lane] : 0;
-        return static_cast<int>(count);
-    }
-    std::vector<Interval<double>> lit(Interval<double> range) {
-        int counts[16] = {};
-        Interval<double> ranges[16];
-        std::vector<Interval<double>> result[16];
-        counts[lane] = dark, ranges[lane] = range;
-        append_lit(counts, crossings, ranges, result);
-        return result[lane];
-    }
-};
-
-Counted crossings_of(const ShadowView& view, const Ray& ray, int tile = -1) {
-    ShadowViewRays rays;
-    rays.tile = tile;
-    place_ray(view, ray, lane, rays);
-    std::vector<ShadowCrossing> found;
-    find_crossings(view, rays, found);
-    return {view.dark, found};
-}
-
 // A ray through everything, from a random point.
 Ray random_ray(uint32_t i, const Box& box) { return {random_point(i, 11, box), random_direction(i, 12), 20}; }
 
@@ -90,64 +31,6 @@ void expect_right(const Stage& stage, const Ray& ray) {
             EXPECT_EQ(counted.at(t), count_between(stage.volumes, point)) << "parallel " << view.parallel;
         }
     }
-}
-
-const Box room{vec3(-4), vec3(4)};
-const LightPoint lights[] = {sun_from({0.3f, 1, 0.2f}), lamp_at({0.5f, 3, -0.4f}), lamp_at({0.1f, 0.2f, 0.3f}),
-                             sun_from({1, 0.001f, 0})};
-
-std::vector<Mesh> random_boxes(int count) {
-    std::vector<Mesh> meshes;
-    for (int i = 0; i < count; ++i) {
-        const vec3 low = random_point(static_cast<uint32_t>(i), 5, {vec3(-3), vec3(2)});
-        const vec3 size = random_point(static_cast<uint32_t>(i), 6, {vec3(0.1f), vec3(1.5f)});
-        meshes.push_back(box_of(low, low + size));
-    }
-    return meshes;
-}
-
-TEST(ShadowMesh, JoinsWhatIsAtTheSamePlace) {
-    const ShadowMesh box = make_shadow_mesh(triangles_of({box_of(vec3(0), vec3(1))}));
-    EXPECT_EQ(box.corners.size(), 8u);
-    EXPECT_EQ(box.edges.size(), 18u); // 12 and a diagonal on each side
-    EXPECT_EQ(box.triangles.size(), 12u);
-    // -0 is 0; a triangle without area is none; alpha casts nothing here.
-    const vec3 x(1, 0, 0), y(0, 1, 0);
-    const ShadowMesh two =
-        make_shadow_mesh({{{vec3(0), x, y}}, {{vec3(-0.0f), y, -x}}, {{x, x, y}}, {{x, y, -y}, true}});
-    EXPECT_EQ(two.corners.size(), 4u);
-    EXPECT_EQ(two.edges.size(), 5u);
-    EXPECT_EQ(two.triangles.size(), 2u);
-}
-
-// What a light reaches is as dark as before from every point of its ball; most of what it does not reach is gone.
-TEST(ShadowMesh, WhatALightReachesKeepsItsShadows) {
-    Light spot, lamp;
-    spot.kind = LightKind::spot, spot.position = vec3(0.5f, 3.4f, -0.4f), spot.radius = 0.2f;
-    spot.direction = glm::normalize(vec3(0.2f, -1, 0.3f)), spot.outer_cone = 0.25f;
-    lamp.position = vec3(0.1f, 0.2f, 0.3f), lamp.range = 1.5f, lamp.radius = 0.1f;
-    const auto whole = std::make_shared<const ShadowMesh>(make_shadow_mesh(triangles_of(random_boxes(40))));
-    for (const Light& light : {spot, lamp}) {
-        const auto part = mesh_in_reach(whole, light);
-        EXPECT_LT(part->triangles.size(), whole->triangles.size() / 2);
-        EXPECT_LT(part->corners.size(), whole->corners.size() / 2);
-        EXPECT_LT(part->edges.size(), whole->edges.size() / 2);
-        int reached = 0, shaded = 0;
-        for (uint32_t i = 0; i < 50000; ++i) {
-            LightPoint point = center_of(light);
-            point.at += 0.99 * double{light.radius} * dvec3(random_direction(i % 20, 31));
-            const dvec3 at(random_point(i, 32, room));
-            if (!(max_component(arrival(light, vec3(at)).irradiance) > 0)) continue;
-            const int dark = count_between(make_shadow_volumes(whole, point), at);
-            ASSERT_EQ(count_between(make_shadow_volumes(part, point), at), dark);
-            ++reached, shaded += dark > 0;
-        }
-        EXPECT_GT(shaded, 50);
-        EXPECT_GT(reached - shaded, 50);
-    }
-    Light sun;
-    sun.kind = LightKind::sun;
-    EXPECT_EQ(mesh_in_reach(whole, sun), whole);
 }
 
 TEST(ShadowVolumes, TheSilhouetteIsWhereFacingChanges) {
@@ -368,75 +251,6 @@ TEST(ShadowVolumes, FarEndsAndGrazingSuns) {
                 EXPECT_TRUE(std::isfinite(stretch.low) && std::isfinite(stretch.high));
         }
     }
-}
-
-TEST(ShadowTiles, HoldAllThatTheirRaysCross) {
-    Camera cameras[4] = {look_at({3, 2, 5}, {0, 0, 0}, {0, 1, 0}, 0.9f),
-                         look_at({0, 0.1f, 0}, {1, 0, 0.3f}, {0, 1, 0}, 1.4f),
-                         look_at({3, 2, 5}, {0, 0, 0}, {0, 1, 0}, 0.9f), look_at({0, 5, 0}, {0, 0, 0}, {1, 0, 0}, 1)};
-    cameras[2].ortho_height = 5, cameras[3].ortho_height = 7;
-    const ivec2 size(150, 100);
-    for (const LightPoint& light : lights) {
-        const Stage stage = stage_of(random_boxes(12), light);
-        for (const Camera& camera : cameras) {
-            const ShadowView view = view_from(stage.volumes, camera, size, 0.5f);
-            ASSERT_EQ(view.tiles, ivec2(19, 13));
-            size_t crossed = 0;
-            for (int i = 0; i < 400; ++i) {
-                const vec2 pixel(static_cast<float>(i * 7919 % 1500) / 10, static_cast<float>(i * 104729 % 1000) / 10);
-                Ray ray = camera_ray(camera, size, pixel);
-                ray.t_max = i % 3 ? 50 : 4;
-                const int tile = static_cast<int>(pixel.y) / shadow_tile_side * view.tiles.x +
-                                 static_cast<int>(pixel.x) / shadow_tile_side;
-                const Counted in_tile = crossings_of(view, ray, tile), all = crossings_of(view, ray);
-                EXPECT_EQ(in_tile.crossings.size(), all.crossings.size());
-                crossed += all.crossings.size();
-            }
-            EXPECT_GT(crossed, 100u);
-        }
-    }
-}
-
-// Of a spot only the tiles that its beam crosses hold anything, and those all that others would hold.
-TEST(ShadowTiles, OfABeamAreThoseItIsSeenIn) {
-    Camera cameras[4] = {look_at({3, 2, 5}, {0, 0, 0}, {0, 1, 0}, 0.9f),
-                         look_at({0.5f, 0, 0}, {0.5f, 3, -0.3f}, {1, 0, 0}, 1),    // in the beam, towards the lamp
-                         look_at({0.4f, 3.2f, -0.4f}, {0.5f, 0, 0}, {1, 0, 0}, 1), // as the lamp looks
-                         look_at({3, 2, 5}, {0, 0, 0}, {0, 1, 0}, 0.9f)};
-    cameras[3].ortho_height = 5;
-    const ivec2 size(150, 100);
-    Light spot;
-    spot.kind = LightKind::spot, spot.position = vec3(0.5f, 3, -0.4f);
-    spot.direction = glm::normalize(vec3(0.1f, -1, 0.15f));
-    const auto mesh = std::make_shared<const ShadowMesh>(make_shadow_mesh(triangles_of(random_boxes(30))));
-    for (const float half_angle : {0.05f, 0.3f, 1.2f})
-        for (const Camera& camera : cameras) {
-            spot.outer_cone = half_angle;
-            const LightPoint point = center_of(spot);
-            const ShadowView all = view_from(make_shadow_volumes(mesh, point), camera, size, 0.5f);
-            const ShadowView beam = view_from(make_shadow_volumes(mesh, point, shadow_reach(spot)), camera, size, 0.5f);
-            EXPECT_LE(beam.side_tiles.faces.size(), all.side_tiles.faces.size());
-            int inside = 0;
-            for (int i = 0; i < 3000; ++i) {
-                const vec2 pixel(static_cast<float>(i * 7919 % 1500) / 10, static_cast<float>(i * 104729 % 1000) / 10);
-                Ray ray = camera_ray(camera, size, pixel);
-                ray.t_max = 50;
-                if (light_reach(spot, ray, {0, ray.t_max}).empty()) continue;
-                const int tile = static_cast<int>(pixel.y) / shadow_tile_side * beam.tiles.x +
-                                 static_cast<int>(pixel.x) / shadow_tile_side;
-                EXPECT_EQ(crossings_of(beam, ray, tile).crossings.size(), crossings_of(all, ray).crossings.size());
-                ++inside;
-            }
-            EXPECT_GT(inside, 10);
-        }
-    spot.outer_cone = 0.05f;
-    const auto faces = [&](std::optional<ShadowReach> reach) {
-        return view_from(make_shadow_volumes(mesh, center_of(spot), reach), cameras[0], size, 0.5f)
-            .side_tiles.faces.size();
-    };
-    EXPECT_LT(5 * faces(shadow_reach(spot)), faces({}));
-    spot.kind = LightKind::point;
-    EXPECT_FALSE(shadow_reach(spot));
 }
 }
 }
