@@ -170,9 +170,11 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     for (uint32_t check = 1; check <= max_checks; ++check) {
         const bool scouted = measured && rounds.choice->scout;
         const double work = scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds);
-        const double ahead = seconds_ahead(rounds, work);
-        const bool wait = ahead < infinity && work * rounds.work_seconds < soon && stats.forecast_seconds == 0;
-        if (goal.error > 0 && has_integrator(mode) && !wait) make_forecast(ahead, rounds, options, stats);
+        if (goal.error > 0 && has_integrator(mode)) {
+            const double ahead = seconds_ahead(rounds, work);
+            const bool wait = ahead < infinity && work * rounds.work_seconds < soon && stats.forecast_seconds == 0;
+            if (!wait) make_forecast(ahead, rounds, options, stats);
+        }
         render_rounds(rounds, rendering, work, result, stats, round);
         if (!has_integrator(mode) || (goal.seconds > 0 && rounds.check_seconds == 0)) break;
 
