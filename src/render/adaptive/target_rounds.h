@@ -75,6 +75,6 @@ bool judge(TargetRounds& rounds, const Layers& result, FrameStats& stats);
 
 // What a goal is likely to take from here, when so much work comes next: an allotment may be enough after its first
 // part, or be begun anew. Noise falls fastest at first: the power measured there holds for about half of the way, in
-// logarithms, and the rest falls as 1 / n. Something was measured beforehand.
+// logarithms, and the rest falls as 1 / n. The rounds must have a choice.
 double seconds_ahead(const TargetRounds& rounds, double next);
 }

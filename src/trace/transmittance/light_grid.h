@@ -8,8 +8,8 @@
 
 namespace tyndall {
 // A grid fitted to the brick media, without its depths; size 0 when the light reaches none of them. `resolution`: cells
-// across the longer side of the fog as the light sees it; along the light they are about as long as wide. None are
-// finer across than half a voxel at a resolution up to 64, an eighth from 256 on; along, than twice that.
+// across the longer side of the fog as the light sees it; along the light they are about as long as wide. Across,
+// they are no smaller than half a voxel at resolutions up to 64 and an eighth from 256 on; along it, than twice that.
 LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& light, int resolution);
 
 // Integrates the media along the columns of a fitted grid, in parallel over columns.
