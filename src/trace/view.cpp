@@ -39,30 +39,36 @@ std::pair<int, int> samples_range(const View& view) {
 }
 
 int batches_of(const View& view, ivec2 pixel) {
-    if (view.leaves > 0) return view.batches;
+    if (view.leaves > 0 || view.before) return view.batches;
     const int factor = view.allotted ? view.allotted->at(pixel / tile_side) : 1;
     return view.batches * (factor >= many_allotted && factor % more_batches == 0 ? more_batches : 1);
 }
 
+BatchSample batch_sample(const View& view, ivec2 pixel, int sample) {
+    const int size = samples_of(view, pixel) / batches_of(view, pixel);
+    const int before = view.before ? view.before->at(pixel / tile_side) : 0;
+    return {static_cast<uint32_t>(sample / size), static_cast<uint32_t>(before + sample % size),
+            static_cast<uint32_t>(before + size)};
+}
+
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample) {
-    const int size = samples_of(view, pixel) / batches_of(view, pixel), batch = sample / size;
+    const auto [batch, index, count] = batch_sample(view, pixel, sample);
     const uint32_t key = hash(static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y), view.seed,
                               static_cast<uint32_t>(view.frame));
-    return {batch ? hash(key, static_cast<uint32_t>(batch)) : key, static_cast<uint32_t>(sample % size)};
+    return {batch ? hash(key, batch) : key, index};
 }
 
 int moment_at(const View& view, ivec2 pixel, int sample) {
-    const uint32_t size = static_cast<uint32_t>(samples_of(view, pixel) / batches_of(view, pixel));
-    const uint32_t number = static_cast<uint32_t>(sample), batch = number / size;
+    const auto [batch, index, count] = batch_sample(view, pixel, sample);
     const ivec2 tile = pixel / tile_side;
     const uint32_t key = hash(static_cast<uint32_t>(tile.x), static_cast<uint32_t>(tile.y), view.seed,
                               static_cast<uint32_t>(view.frame), use_shutter, batch);
     // The samples of all pixels of a tile take the same places in a scrambled sequence of their own ...
-    const uint32_t shuffled = owen_scramble(number % size, hash(key, 0u));
+    const uint32_t shuffled = owen_scramble(index, hash(key, 0u));
     uint32_t time = owen_scramble(reverse_bits(shuffled), hash(key, 1u));
     // ... but that each pixel of 2×2 has its own quarter of what lies between two of them.
     const uint32_t quarter = static_cast<uint32_t>(pixel.x & 1) | static_cast<uint32_t>(pixel.y & 1) << 1;
-    const int bits = std::bit_width(std::bit_ceil(size)) - 1;
+    const int bits = std::bit_width(std::bit_ceil(count)) - 1;
     time ^= quarter << 30 >> bits;
     const uint64_t moments = view.shutter->cameras.size();
     return static_cast<int>(time * moments >> 32);

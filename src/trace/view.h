@@ -12,7 +12,7 @@
 #include <vector>
 
 namespace tyndall {
-// How many times as many samples tiles of 4×4 pixels take.
+// A number for each tile of 4×4 pixels: most often, how many times as many samples it takes.
 struct TileFactors {
     ivec2 low{0}; // the first tile's place
     Image<uint16_t> factors;
@@ -66,6 +66,8 @@ struct View {
     std::shared_ptr<const TileFactors> edges{};    // found for the picture; null = none
     std::shared_ptr<const OpenShutter> shutter{};  // null = the picture is one moment
     std::shared_ptr<const TileFactors> allotted{}; // instead of what lamps and edges take; 0 = the tile is left out
+    std::shared_ptr<const TileFactors> before{};   // samples of a batch that an earlier picture took: this one goes on
+                                                   // in their sequences, in as many batches for all pixels; null = none
 };
 
 // Samples of a pixel: more around the view's lamps and at its edges, or as allotted, the same for all pixels of a tile
@@ -76,6 +78,12 @@ std::pair<int, int> samples_range(const View& view); // fewest and most that a p
 // Batches that a pixel's samples come in: more where it is allotted many, so that its spread is well known.
 inline constexpr int many_allotted = 8, more_batches = 4; // from that factor on, if it is a multiple
 int batches_of(const View& view, ivec2 pixel);
+
+// A sample of a pixel as one of its batch, which counts those of earlier pictures that it goes on from.
+struct BatchSample {
+    uint32_t batch, index, count; // count: samples of the batch once this picture is done
+};
+BatchSample batch_sample(const View& view, ivec2 pixel, int sample);
 
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample);
 

@@ -124,9 +124,9 @@ std::vector<double> shares_of_samples(const Sources& sources) {
 }
 
 // Units of a pixel of a tile, in a picture of so many times as many samples as allotted.
-double units_of(double scale, float samples, int unit) {
+double units_of(double scale, float samples, int unit, bool goes_on) {
     if (!(scale > 0)) return 0;
-    const double wanted = scale * samples / unit, step = wanted >= many_allotted ? more_batches : 1;
+    const double wanted = scale * samples / unit, step = wanted >= many_allotted && !goes_on ? more_batches : 1;
     return std::clamp(std::ceil(wanted / step) * step, 1.0, 1.0 * max_tile_samples - more_batches);
 }
 }
@@ -149,7 +149,8 @@ Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& e
             sum += sources.pixels[i] * variance, squares += sources.squares(i, variance);
         }
         result.squared_error = sum / sources.pixel_count;
-        result.squared_bound = squares > 0 ? result.squared_error * largest_square(sum * sum / squares) : 0;
+        result.pixels = squares > 0 ? sum * sum / squares : infinity;
+        result.squared_bound = squares > 0 ? result.squared_error * largest_square(result.pixels) : 0;
         return result;
     };
 
@@ -168,23 +169,28 @@ Image<float> samples_alike(const Layers& layers, double samples) {
     return Image<float>(tile_count(layers), static_cast<float>(samples));
 }
 
-Image<float> samples_in(const Allotment& allotment, double scale, int unit) {
+Image<float> samples_in(const Allotment& allotment, double scale, int unit, bool goes_on) {
     Image<float> samples = allotment.samples;
-    for (float& value : samples.pixels) value = static_cast<float>(unit * units_of(scale, value, unit));
+    for (float& value : samples.pixels) value = static_cast<float>(unit * units_of(scale, value, unit, goes_on));
     return samples;
 }
 
-AllottedPart part_of(const Allotment& allotment, double from, double to, int unit) {
+AllottedPart part_of(const Allotment& allotment, double from, double to, int unit, bool goes_on) {
     auto factors = std::make_shared<TileFactors>();
-    AllottedPart part{nullptr, {allotment.low, Image<float>(allotment.samples.size)}};
+    const auto taken = std::make_shared<TileFactors>();
+    AllottedPart part{nullptr, nullptr, {allotment.low, Image<float>(allotment.samples.size)}};
     factors->low = allotment.low, factors->factors = Image<uint16_t>(allotment.samples.size);
+    *taken = *factors;
     for (size_t i = 0; i < allotment.samples.pixels.size(); ++i) {
         const float samples = allotment.samples.pixels[i];
-        const double all = units_of(to, samples, unit), added = all - units_of(from, samples, unit);
+        const double all = units_of(to, samples, unit, goes_on), before = units_of(from, samples, unit, goes_on);
+        const double added = all - before;
+        taken->factors.pixels[i] = static_cast<uint16_t>(before * unit / 2);
         factors->factors.pixels[i] = static_cast<uint16_t>(added);
         part.shares.shares.pixels[i] = static_cast<float>(added / all);
     }
     part.factors = std::move(factors);
+    if (goes_on) part.before = taken;
     return part;
 }
 }

@@ -23,6 +23,7 @@ struct TargetRounds {
     double first_part = 1;   // of an allotment
     double done = 0, expected = max_target_samples;
     int freedom = 0;          // differences between batches so far
+    int sequence = 0;         // the round that an allotment began with, whose sequences its parts may go on in
     double check_seconds = 0; // that the check of the picture will take
 
     double left() const { return goal.seconds - check_seconds - (goal.clock() - start); }
@@ -30,10 +31,16 @@ struct TargetRounds {
     int fewest() const { return view.batches > 1 ? 2 : 1; }
     // Samples that are allotted at once.
     int unit() const { return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2; }
+    // Parts of an allotment go on in the same two batches, which noise falls fastest in, where many pixels together
+    // tell how far these are apart.
+    bool goes_on() const {
+        constexpr double many_pixels = 256;
+        return allotment && view.batches == 1 && !error_is_noise(mode) && allotment->pixels >= many_pixels;
+    }
     double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
 
     Image<float> samples_taken(const Layers& layers) const {
-        return allotment ? samples_in(*allotment, done, unit()) : samples_alike(layers, done);
+        return allotment ? samples_in(*allotment, done, unit(), goes_on()) : samples_alike(layers, done);
     }
 
     double noise_target() const { return choice ? tyndall::noise_target(*choice, goal.error) : goal.error; }
@@ -41,11 +48,12 @@ struct TargetRounds {
     // The view of so much work, and the work it is. What is allotted may come in parts.
     View round_view(double& work, int round, const AllottedPart* part) const {
         View result = view;
-        if (round > 0) result.seed = hash(view.seed, static_cast<uint32_t>(round));
+        const int numbers = part && part->before ? sequence : round;
+        if (numbers > 0) result.seed = hash(view.seed, static_cast<uint32_t>(numbers));
         result.batches = part ? unit() : std::min(max_batches(), static_cast<int>(work));
         result.pixel_samples = part ? unit() : static_cast<int>(work) / result.batches * result.batches;
         if (part)
-            result.allotted = part->factors;
+            result.allotted = part->factors, result.before = part->before;
         else
             work = result.pixel_samples;
         return result;

@@ -113,7 +113,9 @@ void render_rounds(TargetRounds& rounds, const Rendering& rendering, double work
     if (rounds.done == 0) rays = 0;
     for (; work > 0; ++round) {
         std::optional<AllottedPart> part;
-        if (rounds.allotment) part = part_of(*rounds.allotment, rounds.done, rounds.done + work, rounds.unit());
+        if (rounds.done == 0) rounds.sequence = round;
+        if (rounds.allotment)
+            part = part_of(*rounds.allotment, rounds.done, rounds.done + work, rounds.unit(), rounds.goes_on());
         const View view = rounds.round_view(work, round, part ? &*part : nullptr);
         const double reached = std::max(begun, std::min(1.0, (rounds.done + work) / rounds.expected));
         FrameOptions options = rendering.options;

@@ -38,8 +38,9 @@ Path camera_path(const View& view, bool in_moments, ivec2 pixel, int sample, int
         static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
     path.seed = hash(index, view.frame, view.seed);
     path.shift = jitter_bits(view.jitter, pixel, view.frame, view.seed) + hash(view.seed, use_jitter);
-    path.samples = static_cast<uint32_t>(samples_of(view, pixel) / batches_of(view, pixel));
-    if (const uint32_t batch = static_cast<uint32_t>(sample) / path.samples) {
+    const auto [batch, at, count] = batch_sample(view, pixel, sample);
+    path.samples = count;
+    if (batch > 0) {
         path.seed = hash(path.seed, batch);
         path.shift += hash(path.seed, use_jitter);
     }

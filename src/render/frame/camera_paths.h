@@ -19,7 +19,7 @@ struct Path {
     uint32_t seed = 0;    // of the pixel and batch in this frame
     uint32_t shift = 0;   // of its jitter
     SamplePlace place;    // in the batch
-    uint32_t samples = 1; // of the batch
+    uint32_t samples = 1; // of the batch so far
     vec2 screen{0};       // position in the picture, 0..1
     vec2 position{0};     // the same in pixels
     int lane = 0;

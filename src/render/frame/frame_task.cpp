@@ -34,6 +34,7 @@ Layers make_layers(const View& view, bool halves) {
         layers.variance = layers.inscatter_variance = Image<vec3>(layers.size);
         layers.variance_error = layers.inscatter_variance_error = layers.work = Image<float>(layers.size);
     }
+    if (view.before) layers.apart = layers.inscatter_apart = Image<vec3>(layers.size);
     if (view.surface_parts || view.fog_parts) layers.surface = layers.background = Image<vec3>(layers.size);
     if (view.fog_parts) layers.ambient = layers.emission = layers.multiple = Image<vec3>(layers.size);
     if (halves) layers.half_a = layers.half_b = Image<vec3>(layers.size);

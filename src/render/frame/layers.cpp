@@ -24,6 +24,24 @@ template<class T, class Share> void blend_power(Image<T>& image, const Image<T>&
         }
 }
 
+// Of two batches that went on: their means come together one by one.
+template<class Share>
+void blend_batches(Image<vec3>& apart, const Image<vec3>& other, Image<vec3>& variance, Image<float>& error,
+                   const Share& share) {
+    blend(apart, other, share);
+    for (size_t i = 0; i < apart.pixels.size(); ++i) {
+        variance.pixels[i] = apart.pixels[i] * apart.pixels[i] / 4.0f;
+        const float mean = mean_component(variance.pixels[i]);
+        error.pixels[i] = mean * mean;
+    }
+}
+
+template<class Share> void blend_batches(Layers& layers, const Layers& other, const Share& share) {
+    blend_batches(layers.apart, other.apart, layers.variance, layers.variance_error, share);
+    blend_batches(layers.inscatter_apart, other.inscatter_apart, layers.inscatter_variance,
+                  layers.inscatter_variance_error, share);
+}
+
 template<class Share> void blend_all(Layers& layers, const Layers& other, const Share& share) {
     blend(layers.color, other.color, share);
     blend(layers.alpha, other.alpha, share);
@@ -39,6 +57,7 @@ template<class Share> void blend_all(Layers& layers, const Layers& other, const 
          {&Layers::surface, &Layers::background, &Layers::ambient, &Layers::emission, &Layers::multiple})
         blend(layers.*part, other.*part, share);
     add_up(layers);
+    if (!other.apart.empty()) return blend_batches(layers, other, share);
     blend_power(layers.variance, other.variance, share, 2);
     blend_power(layers.inscatter_variance, other.inscatter_variance, share, 2);
     blend_power(layers.variance_error, other.variance_error, share, 4);

@@ -34,6 +34,7 @@ struct Layers {
     Image<vec3> channel_transmittance;        // where fog of the scene is coloured: that of each channel
     Image<float> validity;                    // of the least valid stretch of a sample
     Image<vec3> variance, inscatter_variance; // of the means `color` and `inscatter`; for more than one batch
+    Image<vec3> apart, inscatter_apart; // of two batches: the first less the second, where others may go on in them
     Image<float> variance_error, inscatter_variance_error; // squared standard errors of the variances' channel means
     Image<float> work;                                     // of a sample, see ray_work; for more than one batch
     Image<vec3> half_a, half_b;                            // on request: colour of the even and of the odd batches

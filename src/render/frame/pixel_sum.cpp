@@ -36,6 +36,7 @@ void PixelSum::end_batch(int samples) {
     const float count = static_cast<float>(samples);
     const vec3 color = surface + background + inscatter;
     half_means[color_mean.count % 2].add(color / count);
+    fog_half_means[color_mean.count % 2].add(inscatter / count);
     color_mean.add(color / count);
     surface_mean.add(surface / count), background_mean.add(background / count);
     inscatter_mean.add(inscatter / count);
@@ -64,6 +65,10 @@ void store_pixel(const PixelSum& sum, int samples, ivec2 p, Layers& layers) {
     if (!layers.variance_error.empty()) layers.variance_error.at(p.x, p.y) = sum.color_mean.variance_error();
     if (!layers.inscatter_variance_error.empty())
         layers.inscatter_variance_error.at(p.x, p.y) = sum.inscatter_mean.variance_error();
+    if (!layers.apart.empty()) {
+        layers.apart.at(p.x, p.y) = vec3(sum.half_means[0].mean - sum.half_means[1].mean);
+        layers.inscatter_apart.at(p.x, p.y) = vec3(sum.fog_half_means[0].mean - sum.fog_half_means[1].mean);
+    }
     if (layers.half_a.empty()) return;
     layers.half_a.at(p.x, p.y) = vec3(sum.half_means[0].mean);
     layers.half_b.at(p.x, p.y) = vec3(sum.half_means[1].mean);

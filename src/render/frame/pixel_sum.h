@@ -25,7 +25,7 @@ struct RunningSpread : RunningMean {
 // What makes up the colour goes through the means of batches; everything else is summed over all samples.
 struct PixelSum {
     vec3 surface{0}, background{0}, inscatter{0}; // of the current batch
-    RunningMean surface_mean, background_mean, half_means[2];
+    RunningMean surface_mean, background_mean, half_means[2], fog_half_means[2];
     RunningSpread inscatter_mean, color_mean;
     float weight = 0, alpha = 0, transmittance = 0, validity = 0; // weighted
     int kept = 0;                                                 // samples

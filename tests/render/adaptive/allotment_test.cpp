@@ -116,8 +116,8 @@ TEST(Allotment, IsRenderedInPartsThatAddUp) {
     Allotment allotment;
     allotment.samples = Image<float>({2, 1});
     allotment.samples.pixels = {99.5f, 298.5f};
-    const AllottedPart whole = part_of(allotment, 0, 1, 2), half = part_of(allotment, 0, 0.5, 2),
-                       rest = part_of(allotment, 0.5, 1, 2), least = part_of(allotment, 0, 1e-6, 2);
+    const AllottedPart whole = part_of(allotment, 0, 1, 2, false), half = part_of(allotment, 0, 0.5, 2, false),
+                       rest = part_of(allotment, 0.5, 1, 2, false), least = part_of(allotment, 0, 1e-6, 2, false);
     EXPECT_EQ(whole.factors->at({0, 0}), 52) << "50 in whole batches";
     EXPECT_EQ(whole.factors->at({1, 0}), 152);
     EXPECT_EQ(half.factors->at({0, 0}), 28);
@@ -126,7 +126,7 @@ TEST(Allotment, IsRenderedInPartsThatAddUp) {
     EXPECT_FLOAT_EQ(rest.shares.shares.at(1, 0), 0.5f);
     EXPECT_EQ(least.factors->at({1, 0}), 1);
     EXPECT_FLOAT_EQ(least.shares.shares.at(1, 0), 1.0f);
-    EXPECT_EQ(part_of(allotment, 1e-6, 2e-6, 2).factors->at({1, 0}), 0) << "rounding up has given it already";
+    EXPECT_EQ(part_of(allotment, 1e-6, 2e-6, 2, false).factors->at({1, 0}), 0) << "rounding up has given it already";
 
     View view = plain_view({8, 4}, 2);
     view.allotted = whole.factors;
