@@ -7,11 +7,12 @@
 
 namespace tyndall {
 namespace {
-// Fog between two distances along a ray: no denser than `majorant`, or exactly that dense.
+// Fog between two distances along a ray, and bounds of its density there.
 struct Fog {
     double low = 0, high = 0;
-    float majorant = 0;
-    bool even = false;
+    float minimum = 0, majorant = 0;
+
+    bool even() const { return minimum == majorant; }
 };
 
 float mixed(float a, float b, float weight) { return a + weight * (b - a); }
@@ -33,10 +34,10 @@ void walk_brick_fog(const BrickPool& pool, const Ray& ray, Interval<double> rang
     const LocalRay local = local_ray(pool, ray);
     walk_bricks(pool, local, range, [&](ivec3 brick, int64_t at, double low, double high) {
         const int32_t id = pool.index[at];
-        if (id < 0) return visit(Fog{low, high, pool.constants[-id - 1], true}, [](double) { return 0.0f; });
+        if (id < 0) return visit(Fog{low, high, pool.minimum[at], pool.maximum[at]}, [](double) { return 0.0f; });
         const uint16_t* values = &pool.values[size_t(id - 1) * brick_stride];
         const dvec3 start = local.origin - dvec3(brick * 8);
-        return visit(Fog{low, high, pool.maximum[at], false},
+        return visit(Fog{low, high, pool.minimum[at], pool.maximum[at]},
                      [&](double t) { return brick_value(values, vec3(start + t * local.direction)); });
     });
 }
@@ -50,7 +51,7 @@ void walk_height_fog(const Medium& medium, const Ray& ray, Interval<double> rang
     const auto density = [&](double t) {
         return static_cast<float>(std::exp(-std::max(start + t * slope, 0.0) / falloff));
     };
-    if (slope == 0) return void(visit(Fog{range.low, range.high, density(0), true}, density));
+    if (slope == 0) return void(visit(Fog{range.low, range.high, density(0), density(0)}, density));
 
     // Layer 0 lies below the base, layer k between (k-1)/2 and k/2 scale heights above it.
     for (int i = 0; i <= layers && !range.empty(); ++i) {
@@ -59,8 +60,8 @@ void walk_height_fog(const Medium& medium, const Ray& ray, Interval<double> rang
                      bottom = layer == 0 ? -infinity : (0.5 * falloff * (layer - 1) - start) / slope;
         const double enters = slope > 0 ? bottom : top;
         const double leaves = slope > 0 ? top : (layer == 0 ? infinity : bottom);
-        const Fog fog{std::max(range.low, enters), std::min(range.high, leaves),
-                      layer == 0 ? 1.0f : static_cast<float>(std::exp(-0.5 * (layer - 1))), layer == 0};
+        const float above = layer == 0 ? 1.0f : static_cast<float>(std::exp(-0.5 * (layer - 1)));
+        const Fog fog{std::max(range.low, enters), std::min(range.high, leaves), layer == 0 ? 1.0f : 0.0f, above};
         if (fog.low < fog.high && !visit(fog, density)) return;
     }
 }
@@ -72,7 +73,7 @@ template<class Visit> void walk_fog(const Medium& medium, const Ray& ray, Interv
     const Interval<double> inside = clip(medium.density.bounds, local_ray(medium.density.world_to_local, ray), whole);
     if (inside.empty()) return;
     if (medium.density.kind == DensityKind::height) return walk_height_fog(medium, ray, inside, visit);
-    visit(Fog{inside.low, inside.high, 1, true}, [](double) { return 1.0f; });
+    visit(Fog{inside.low, inside.high, 1, 1}, [](double) { return 1.0f; });
 }
 
 double free_depth(float u) { return -std::log1p(-static_cast<double>(u)); }
@@ -90,7 +91,7 @@ float collision_distance(const Medium& medium, const Ray& ray, Interval<float> r
                 break;
             }
             t += step;
-            if (fog.even || (++lookups, random.next() * fog.majorant < density(t))) return found = t, false;
+            if (fog.even() || (++lookups, random.next() * fog.majorant < density(t))) return found = t, false;
             left = free_depth(random.next());
         }
         return true;
@@ -100,25 +101,31 @@ float collision_distance(const Medium& medium, const Ray& ray, Interval<float> r
 
 float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> range, RandomStream& random,
                           int& lookups) {
-    constexpr double small = 0.1;
-    double share = 1, left = free_depth(random.next());
-    walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
-        const double majorant = static_cast<double>(grey_extinction(medium.optics)) * fog.majorant;
-        if (fog.even) return majorant == 0 || (share *= std::exp(-majorant * (fog.high - fog.low))) > 0;
-        for (double t = fog.low; majorant > 0;) {
-            const double step = left / majorant;
+    if (medium.density.kind != DensityKind::bricks)
+        return static_cast<float>(std::exp(-optical_depth(medium, {ray.at(range.low), ray.direction, range.length()})));
+    constexpr double small = 0.1, often = 4;
+    const double extinction = grey_extinction(medium.optics);
+    double share = 1, certain = 0; // what passes, and the depth of the least densities it has yet to be dimmed by
+    double left = free_depth(random.next());
+    walk_brick_fog(*medium.density.bricks, ray, {range.low, range.high}, [&](const Fog& fog, const auto& density) {
+        certain += extinction * fog.minimum * (fog.high - fog.low);
+        if (certain > small) share *= std::exp(-certain), certain = 0;
+        // Noise counts by the light that is left: the best rate of lookups is in proportion to it.
+        const double varying = extinction * (fog.majorant - fog.minimum);
+        for (double t = fog.low; varying > 0;) {
+            const double rate = std::max(1.0, often * share) * varying, step = left / rate;
             if (t + step >= fog.high) {
-                left -= majorant * (fog.high - t);
+                left -= rate * (fog.high - t);
                 break;
             }
             t += step, ++lookups;
-            share *= std::max(0.0, 1 - static_cast<double>(density(t)) / fog.majorant);
+            share *= std::clamp(1 - extinction * (density(t) - fog.minimum) / rate, 0.0, 1.0);
+            left = free_depth(random.next());
             if (share < small) share = random.next() * small < share ? small : 0;
             if (share == 0) return false;
-            left = free_depth(random.next());
         }
         return true;
     });
-    return static_cast<float>(share);
+    return static_cast<float>(share * std::exp(-certain));
 }
 }

@@ -12,8 +12,10 @@ struct Medium;
 float collision_distance(const Medium& medium, const Ray& ray, Interval<float> range, float first, RandomStream& random,
                          int& lookups);
 
-// An estimate, right on average, of the share of light that passes the stretch `range` of the ray (ratio tracking:
-// Novák et al. 2014). Not above 1; exact in homogeneous fog. Ends small values by Russian roulette.
+// An estimate, right on average, of the share of light that passes the stretch `range` of the ray; not above 1. Exact
+// in homogeneous and height fog. In grids the least density of each brick dims by its closed form and the rest by ratio
+// tracking (residual ratio tracking: Novák et al. 2014), four times as often as collisions would be while all light is
+// left, less often with less of it. Ends small values by Russian roulette.
 float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> range, RandomStream& random,
                           int& lookups);
 }

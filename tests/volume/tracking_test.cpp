@@ -67,6 +67,30 @@ TEST(Tracking, RatioTrackingIsRightOnAverage) {
     }
 }
 
+// By the least densities of bricks most of it is known, inside the grid; collisions alone would leave a variance of
+// e^depth - 1 times the square of what passes.
+TEST(Tracking, RatioTrackingIsNearlyExactInSmoothFogAndNeverAboveOne) {
+    SparseVolume smooth = volume_of(ivec3(0), ivec3(63), [](int x, int y, int z) {
+        return 0.7f + 0.05f * std::sin(0.2f * static_cast<float>(x)) + 0.1f * exact_noise(x, y, z);
+    });
+    smooth.index_to_world = glm::scale(dmat4(1), dvec3(0.05));
+    const Medium medium = medium_of(smooth, 1.0f);
+    const Ray ray{medium.density.bricks->bounds.center() - vec3(1, 0, 0), glm::normalize(vec3(1, 0.1f, 0.05f)), 2};
+    const double depth = optical_depth(medium, ray);
+    ASSERT_GT(depth, 1);
+    Mean mean;
+    int lookups = 0;
+    for (uint32_t i = 0; i < 20000; ++i) {
+        RandomStream random{hash(i, 14u)};
+        const float share = ratio_transmittance(medium, ray, {0, ray.t_max}, random, lookups);
+        ASSERT_LE(share, 1);
+        mean.add(share);
+    }
+    EXPECT_LT(std::abs(mean.value() - std::exp(-depth)), limit * mean.error());
+    EXPECT_LT(mean.error() * std::sqrt(20000), 0.2 * mean.value() * std::sqrt(std::expm1(depth)));
+    EXPECT_LT(lookups / 20000.0, 2 * depth);
+}
+
 TEST(Tracking, ACollisionComesBeforeADistanceAsOftenAsFogTakesLight) {
     for (const Case& c : cases())
         for (const float share : {0.35f, 0.6f, 1.0f}) {

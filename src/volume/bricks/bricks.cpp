@@ -33,7 +33,7 @@ float mixed(float a, float b, float weight) { return std::fma(b - a, weight, a);
 
 uint64_t BrickPool::bytes() const {
     return index.size() * sizeof(int32_t) + values.size() * sizeof(uint16_t) +
-           (constants.size() + maximum.size()) * sizeof(float);
+           (constants.size() + minimum.size() + maximum.size()) * sizeof(float);
 }
 
 void place(BrickPool& pool, const dmat4& index_to_world) {

@@ -21,10 +21,10 @@ struct BrickPool {
     ivec3 low{0};  // index-space voxel at the lower corner of brick (0,0,0); a multiple of 8
     ivec3 size{0}; // bricks along each axis
     SharedArray<int32_t> index;
-    SharedArray<uint16_t> values; // half floats; densities above 65504 are stored as that
-    SharedArray<float> constants; // exactly representable as halves, as the values are
-    SharedArray<float> maximum;   // per cell of `index`: largest value inside, apron included (the majorant)
-    mat4 world_to_index{1};       // to local coordinates and back
+    SharedArray<uint16_t> values;        // half floats; densities above 65504 are stored as that
+    SharedArray<float> constants;        // exactly representable as halves, as the values are
+    SharedArray<float> minimum, maximum; // per cell of `index`: least and largest value inside, apron included
+    mat4 world_to_index{1};              // to local coordinates and back
     mat4 index_to_world{1};
     vec3 anchor{0};           // a world point in the fog, and its local coordinates: differences from it stay
     vec3 anchor_index{0};     // exact where the fog lies far from the origin
@@ -45,7 +45,7 @@ struct BrickPool {
 // Of cache files, in this order; not `content`.
 template<class Visit> void fields(BrickPool& pool, Visit& visit) {
     visit(pool.low), visit(pool.size);
-    visit(pool.index), visit(pool.values), visit(pool.constants), visit(pool.maximum);
+    visit(pool.index), visit(pool.values), visit(pool.constants), visit(pool.minimum), visit(pool.maximum);
     visit(pool.world_to_index), visit(pool.index_to_world), visit(pool.anchor), visit(pool.anchor_index);
     visit(pool.bounds), visit(pool.local_bounds), visit(pool.highest), visit(pool.crowded);
     visit(pool.mass), visit(pool.mean), visit(pool.mean_in_bricks), visit(pool.voxel_size);

@@ -19,16 +19,11 @@ constexpr int64_t farthest_voxel = int64_t{1} << 30;
 // The eight cells whose voxels are corners of one brick, d = 4·dx + 2·dy + dz.
 using Corners = std::array<int32_t, 8>;
 
-struct Packed {
-    uint16_t largest = 0;
-    bool uniform = false;
-};
-
 // What a pool's arrays grow in.
 struct BrickArrays {
     std::vector<int32_t> index;
     std::vector<uint16_t> values;
-    std::vector<float> constants, maximum;
+    std::vector<float> constants, minimum, maximum;
 };
 
 // Places the grid of bricks: one layer of zeros before the first voxel and one behind the last.
@@ -92,7 +87,7 @@ std::vector<ivec3> listed_bricks(const BrickPool& pool, const Sources& sources, 
 }
 
 // Writes the 9³ corner values of a brick.
-Packed pack(const Corners& corners, const Sources& sources, uint16_t* values) {
+HalfRange pack(const Corners& corners, const Sources& sources, uint16_t* values) {
     static constexpr std::array<float, 8> nothing{};
     float buffer[729];
     for (int x = 0; x < 9; ++x)
@@ -110,12 +105,11 @@ Packed pack(const Corners& corners, const Sources& sources, uint16_t* values) {
                     to[8] = from[0];
             }
         }
-    const HalfRange range = halves_from_floats(buffer, 729, values);
-    return {range.high, range.low == range.high};
+    return halves_from_floats(buffer, 729, values);
 }
 
-std::vector<Packed> packed_bricks(const std::string& name, const std::vector<ivec3>& list, const Sources& sources,
-                                  const BrickPool& pool, BrickArrays& arrays) {
+std::vector<HalfRange> packed_bricks(const std::string& name, const std::vector<ivec3>& list, const Sources& sources,
+                                     const BrickPool& pool, BrickArrays& arrays) {
     const double bytes = static_cast<double>(list.size()) * brick_stride * sizeof(uint16_t);
     const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
     if (bytes > memory)
@@ -129,7 +123,7 @@ std::vector<Packed> packed_bricks(const std::string& name, const std::vector<ive
     const uintptr_t low = (room + page - 1) & ~(page - 1), high = (room + list.size() * brick_stride * 2) & ~(page - 1);
     if (low < high) madvise(reinterpret_cast<void*>(low), high - low, MADV_HUGEPAGE);
     arrays.values.resize(list.size() * brick_stride);
-    std::vector<Packed> packed(list.size());
+    std::vector<HalfRange> packed(list.size());
     parallel_ranges(static_cast<int64_t>(list.size()), 16, [&](int64_t begin, int64_t end) {
         for (int64_t i = begin; i < end; ++i)
             packed[i] = pack(corners_of(pool, sources, list[i]), sources, &arrays.values[i * brick_stride]);
@@ -138,18 +132,20 @@ std::vector<Packed> packed_bricks(const std::string& name, const std::vector<ive
 }
 
 // Turns the marks in the index into brick and constant numbers, closing the gaps that uniform bricks leave.
-void finish_index(const std::vector<Packed>& packed, BrickArrays arrays, BrickPool& pool) {
-    arrays.maximum.assign(arrays.index.size(), 0);
+void finish_index(const std::vector<HalfRange>& packed, BrickArrays arrays, BrickPool& pool) {
+    arrays.minimum.assign(arrays.index.size(), 0);
+    arrays.maximum = arrays.minimum;
     std::vector<int32_t> constant_of(half_from_float(largest_half) + 1, 0);
     size_t next = 0, bricks = 0, filled = 0;
     for (size_t cell = 0; cell < arrays.index.size(); ++cell) {
         int32_t& id = arrays.index[cell];
         if (id == 0) continue;
         ++filled;
-        const Packed brick = id > 0 ? packed[next] : Packed{static_cast<uint16_t>(-id), true};
-        arrays.maximum[cell] = float_from_half(brick.largest);
-        if (brick.uniform) {
-            int32_t& constant = constant_of[brick.largest];
+        const auto tile = static_cast<uint16_t>(-id);
+        const HalfRange brick = id > 0 ? packed[next] : HalfRange{tile, tile};
+        arrays.minimum[cell] = float_from_half(brick.low), arrays.maximum[cell] = float_from_half(brick.high);
+        if (brick.low == brick.high) {
+            int32_t& constant = constant_of[brick.high];
             if (constant == 0) {
                 arrays.constants.push_back(arrays.maximum[cell]);
                 constant = -static_cast<int32_t>(arrays.constants.size());
@@ -169,7 +165,8 @@ void finish_index(const std::vector<Packed>& packed, BrickArrays arrays, BrickPo
     pool.crowded = bricks_within - filled <= bricks_within / 16;
     pool.mean_in_bricks = static_cast<float>(pool.mass / (512.0 * static_cast<double>(filled)));
     pool.index = std::move(arrays.index), pool.values = std::move(arrays.values);
-    pool.constants = std::move(arrays.constants), pool.maximum = std::move(arrays.maximum);
+    pool.constants = std::move(arrays.constants);
+    pool.minimum = std::move(arrays.minimum), pool.maximum = std::move(arrays.maximum);
 }
 }
 
@@ -182,7 +179,7 @@ std::shared_ptr<const BrickPool> make_bricks(const SparseVolume& volume) {
         fill_cells(*pool, volume, sources);
         BrickArrays arrays;
         const std::vector<ivec3> list = listed_bricks(*pool, sources, arrays);
-        const std::vector<Packed> packed = packed_bricks(volume.name, list, sources, *pool, arrays);
+        const std::vector<HalfRange> packed = packed_bricks(volume.name, list, sources, *pool, arrays);
         finish_index(packed, std::move(arrays), *pool);
     }
     place(*pool, volume.index_to_world);

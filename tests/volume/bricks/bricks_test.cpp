@@ -24,7 +24,7 @@ SparseVolume mixed_volume() {
 
 bool same_bricks(const BrickPool& a, const BrickPool& b) {
     return a.low == b.low && a.size == b.size && a.index == b.index && a.values == b.values &&
-           a.constants == b.constants && a.maximum == b.maximum;
+           a.constants == b.constants && a.minimum == b.minimum && a.maximum == b.maximum;
 }
 
 bool same(const BrickPool& a, const BrickPool& b) { return same_bricks(a, b) && a.mass == b.mass && a.mean == b.mean; }
@@ -117,7 +117,7 @@ TEST(Bricks, ALeafComesBeforeTheTileAroundIt) {
     EXPECT_EQ(sample_density(*pool, vec3(12)), 1);
 }
 
-TEST(Bricks, MaximumIsTheLargestCornerValue) {
+TEST(Bricks, MinimumAndMaximumAreThoseOfTheCornerValues) {
     const SparseVolume volume = mixed_volume();
     const auto pool = make_bricks(volume);
     const VoxelMap map(volume);
@@ -126,10 +126,12 @@ TEST(Bricks, MaximumIsTheLargestCornerValue) {
     for (int x = 0; x < pool->size.x; ++x)
         for (int y = 0; y < pool->size.y; ++y)
             for (int z = 0; z < pool->size.z; ++z, ++cell) {
-                float largest = 0;
-                for (int c = 0; c < 729; ++c)
-                    largest =
-                        std::max(largest, map.at(pool->low + ivec3(x, y, z) * 8 + ivec3(c / 81, c / 9 % 9, c % 9)));
+                float least = infinity, largest = 0;
+                for (int c = 0; c < 729; ++c) {
+                    const float value = map.at(pool->low + ivec3(x, y, z) * 8 + ivec3(c / 81, c / 9 % 9, c % 9));
+                    least = std::min(least, value), largest = std::max(largest, value);
+                }
+                EXPECT_EQ(pool->minimum[cell], least);
                 EXPECT_EQ(pool->maximum[cell], largest);
                 EXPECT_EQ(pool->index[cell] == 0, largest == 0);
                 highest = std::max(highest, largest);
