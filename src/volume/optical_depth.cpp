@@ -63,7 +63,7 @@ namespace {
 double height_column(double height, double slope, double length, double falloff) {
     if (slope == 0) {
         const double density = std::exp(-std::max(height, 0.0) / falloff);
-        return density == 0 ? 0 : length * density;
+        return static_cast<float>(density) == 0 ? 0 : length * density; // as floats hold it: rays may be endless
     }
     const double lower = slope > 0 ? height : height + slope * length, rate = std::abs(slope) / falloff;
     const double below = std::clamp(-lower / std::abs(slope), 0.0, length);
