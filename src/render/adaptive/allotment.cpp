@@ -185,7 +185,7 @@ AllottedPart part_of(const Allotment& allotment, double from, double to, int uni
         const float samples = allotment.samples.pixels[i];
         const double all = units_of(to, samples, unit, goes_on), before = units_of(from, samples, unit, goes_on);
         const double added = all - before;
-        taken->factors.pixels[i] = static_cast<uint16_t>(before * unit / 2);
+        taken->factors.pixels[i] = static_cast<uint16_t>(before);
         factors->factors.pixels[i] = static_cast<uint16_t>(added);
         part.shares.shares.pixels[i] = static_cast<float>(added / all);
     }

@@ -14,7 +14,7 @@ struct Allotment {
     double rays = 0;          // of all pixels, counted in those of the mean cost
     double squared_error = 0; // to expect, as a share of the squared mean
     double squared_bound = 0; // below which it is with a confidence of 99.5 %
-    double pixels = 0;        // of equal variance that would spread the error as much
+    double pixels = 0;        // that hold the error: as many of equal variance would spread it as much
 };
 
 // Least cost with no more error than both, or the best that so many rays of the mean cost give.
@@ -31,16 +31,16 @@ Allotment allot(const Layers& layers, double taken, const Enough& enough, double
 Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& enough, double power, int least);
 
 // Samples of a pixel of each tile: as many in all; or in a picture of `scale` times as many as allotted, in multiples
-// of `unit`. What goes on in two batches has no more batches where more samples are.
+// of `unit`. Batches that go on from part to part stay as few in tiles of many samples.
 Image<float> samples_alike(const Layers& layers, double samples);
 Image<float> samples_in(const Allotment& allotment, double scale, int unit, bool goes_on);
 
 // What a picture of `to` times as many samples as allotted adds to one of `from` times as many: in multiples of `unit`,
 // one at least, but none where `from` is above 0 and rounding up has given them already.
 struct AllottedPart {
-    std::shared_ptr<const TileFactors> factors,
-        before;        // before: samples of a batch there are; null = it goes on in none
-    TileShares shares; // of the two together
+    std::shared_ptr<const TileFactors> factors; // units added
+    std::shared_ptr<const TileFactors> before;  // samples that its batches go on after; null = they are new
+    TileShares shares;                          // of the two together
 };
 AllottedPart part_of(const Allotment& allotment, double from, double to, int unit, bool goes_on);
 }

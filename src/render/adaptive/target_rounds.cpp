@@ -56,8 +56,7 @@ namespace {
 double work_as_it_goes(const TargetRounds& rounds, const Allotment& allotment, const Noise& noise) {
     // By the bound, where the goal can be reached: what an allotment missed few batches tell of.
     const double target = rounds.noise_target() * rounds.noise_target();
-    const double power = rounds.goes_on() ? rounds.power() : 1;
-    const auto more = [&](double ratio) { return rounds.done * (std::pow(ratio, 1 / power) - 1); };
+    const auto more = [&](double ratio) { return rounds.done * (std::pow(ratio, 1 / rounds.power_of_parts()) - 1); };
     if (rounds.allotment && allotment.squared_bound <= target) return more(noise.bound * noise.bound / target);
     return more(noise.error * noise.error / allotment.squared_error);
 }
@@ -95,7 +94,7 @@ double next_part(TargetRounds& rounds, const FrameStats& stats) {
     double wanted = rounds.goal.error > 0 ? rounds.first_part : 1;
     if (rounds.done > 0 && rounds.goal.error > 0) {
         const double ratio = stats.noise->bound / rounds.noise_target();
-        rounds.expected = 1.02 * rounds.done * std::pow(ratio, 2 / (rounds.goes_on() ? rounds.power() : 1));
+        rounds.expected = 1.02 * rounds.done * std::pow(ratio, 2 / rounds.power_of_parts());
         wanted = std::clamp(rounds.expected - rounds.done, 0.125 * rounds.done, rounds.done);
     }
     if (rounds.goal.seconds > 0) {

@@ -38,6 +38,7 @@ struct TargetRounds {
         return allotment && view.batches == 1 && !error_is_noise(mode) && allotment->pixels >= many_pixels;
     }
     double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
+    double power_of_parts() const { return goes_on() ? power() : 1; } // independent ones add up as 1 / n
 
     Image<float> samples_taken(const Layers& layers) const {
         return allotment ? samples_in(*allotment, done, unit(), goes_on()) : samples_alike(layers, done);

@@ -1,9 +1,7 @@
 // Pictures whose samples go on where an earlier one's ended: together they are one of all samples.
-#include "integrate/ray_batch.h"
 #include "modes/mode.h"
 #include "render/adaptive/target_rounds.h"
 #include "render/frame/noise_fixtures.h"
-#include "render/frame/pixel_sum.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -30,9 +28,12 @@ View part_view(std::vector<uint16_t> before, std::vector<uint16_t> added, uint32
     return view;
 }
 
-const std::vector<uint16_t>
-    none(8, 0), some = {3, 1, 5, 16, 2, 7, 8, 4}, rest = {5, 15, 11, 0, 6, 9, 24, 4}, all = {8, 16, 16, 16,
-                                                                                             8, 16, 32, 8};
+// Samples of a batch, by tile.
+using Counts = std::vector<uint16_t>;
+const Counts none(8, 0);
+const Counts some = {3, 1, 5, 16, 2, 7, 8, 4};
+const Counts rest = {5, 15, 11, 0, 6, 9, 24, 4};
+const Counts all = {8, 16, 16, 16, 8, 16, 32, 8};
 
 Layers in_two_parts(const Mode& mode, const Snapshot& snapshot, uint32_t seed, uint32_t second_seed) {
     Layers layers = rendered(mode, part_view(none, some, seed), snapshot);
@@ -41,20 +42,6 @@ Layers in_two_parts(const Mode& mode, const Snapshot& snapshot, uint32_t seed, u
         shares.shares.pixels[i] = static_cast<float>(rest[i]) / static_cast<float>(all[i]);
     blend_layers(layers, rendered(mode, part_view(some, rest, second_seed), snapshot), shares);
     return layers;
-}
-
-// Where a sample lies in the lens, which a sequence spreads evenly.
-ScatterFunction prepare_place(const View&, const Snapshot&, const Settings&, History*) {
-    return [](const RayBatch& batch, std::span<Scatter> results) {
-        for (size_t i = 0; i < results.size(); ++i)
-            results[i] = {vec3(sample2(batch.places[i].index, batch.places[i].sequence).x), 1, 1, 1};
-    };
-}
-
-ScatterFunction prepare_jitter(const View&, const Snapshot&, const Settings&, History*) {
-    return [](const RayBatch& batch, std::span<Scatter> results) {
-        for (size_t i = 0; i < results.size(); ++i) results[i] = {vec3(batch.jitter[i]), 1, 1, 1};
-    };
 }
 
 double mean_square_of(const Image<vec3>& image, float mean) {
@@ -118,7 +105,7 @@ TEST(GoingOn, ToldVarianceIsThatOfThePicture) {
     }
 }
 
-TEST(GoingOn, LessNoiseIsLeftThanOfPartsThatKnowNothingOfEachOther) {
+TEST(GoingOn, LeavesLessNoiseThanIndependentParts) {
     const Scene scene;
     const Snapshot snapshot = snapshot_of(scene);
     double going_on = 0, apart = 0;

@@ -1,5 +1,4 @@
 #include "base/random.h"
-#include "integrate/ray_batch.h"
 #include "modes/mode.h"
 #include "render/frame/layers.h"
 #include "render/frame/noise_fixtures.h"
@@ -255,19 +254,6 @@ void expect_honest_variance(const Mode& mode, const Snapshot& snapshot, const Vi
     }
     ASSERT_GT(wanted, 0);
     EXPECT_NEAR(found, wanted, 5 * std::sqrt(2.0 / (seeds - 1) * squares));
-}
-
-ScatterFunction prepare_jitter(const View&, const Snapshot&, const Settings&, History*) {
-    return [](const RayBatch& batch, std::span<Scatter> results) {
-        for (size_t i = 0; i < results.size(); ++i) results[i] = {vec3(batch.jitter[i]), 1, 1, 1};
-    };
-}
-
-ScatterFunction prepare_place(const View&, const Snapshot&, const Settings&, History*) {
-    return [](const RayBatch& batch, std::span<Scatter> results) {
-        for (size_t i = 0; i < results.size(); ++i)
-            results[i] = {vec3(sample2(batch.places[i].index, batch.places[i].sequence).x), 1, 1, 1};
-    };
 }
 }
 

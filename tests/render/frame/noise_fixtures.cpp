@@ -12,6 +12,19 @@ ScatterFunction prepare_random(const View&, const Snapshot&, const Settings&, Hi
     };
 }
 
+ScatterFunction prepare_jitter(const View&, const Snapshot&, const Settings&, History*) {
+    return [](const RayBatch& batch, std::span<Scatter> results) {
+        for (size_t i = 0; i < results.size(); ++i) results[i] = {vec3(batch.jitter[i]), 1, 1, 1};
+    };
+}
+
+ScatterFunction prepare_place(const View&, const Snapshot&, const Settings&, History*) {
+    return [](const RayBatch& batch, std::span<Scatter> results) {
+        for (size_t i = 0; i < results.size(); ++i)
+            results[i] = {vec3(sample2(batch.places[i].index, batch.places[i].sequence).x), 1, 1, 1};
+    };
+}
+
 Mode own_mode(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*)) {
     return {"own",         "shades surfaces itself", "tests", Accuracy::multiple_scattering,
             Surfaces::own, no_limitations,           prepare};

@@ -9,6 +9,10 @@ namespace tyndall::test {
 ScatterFunction prepare_random(const View&, const Snapshot&, const Settings&, History*);
 inline constexpr double random_mean = 0.5, random_variance = 1.0 / 12;
 
+// The number that spreads samples along a ray, and one of those that spread them over a lens or a light.
+ScatterFunction prepare_jitter(const View&, const Snapshot&, const Settings&, History*);
+ScatterFunction prepare_place(const View&, const Snapshot&, const Settings&, History*);
+
 Mode own_mode(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*));
 
 View batched_view(ivec2 size, int samples, int batches);
