@@ -306,7 +306,9 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     integrator = first.integrator;
     const auto work_lacking = [&] { return result.work_to(goal.error) - samples * result.measured.sample_work; };
     // Of what more samples would take; where that is unknown, of what those there are took.
-    const auto saving = [&] { return choice.scout ? work_lacking() : samples * first.sample_work; };
+    const auto saving = [&] {
+        return std::min(choice.scout ? work_lacking() : samples * first.sample_work, goal.other_work);
+    };
     const auto is_in_time = [&] { return goal.seconds == 0 || goal.clock() + pilot->cost.seconds < until; };
     const double left = goal.error * goal.error - noise.bound * noise.bound;
     while (left > 0 && is_undecided(integrator, left) && is_in_time() &&
@@ -318,7 +320,7 @@ Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, 
     if (rivals) return result; // the main mode is likely to be quicker than a finer one
 
     // More samples of this one, of which some are there, or a finer one from nothing.
-    double least = work_lacking();
+    double least = std::min(work_lacking(), goal.other_work);
     auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
     while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
         Look of_finer = chooser.look_at(*next, choice.scout.get());

@@ -39,6 +39,7 @@ struct Goal {
     // where that does not get to the error; null = the settings rendered.
     std::shared_ptr<const Settings> wanted{};
     std::optional<OrdersError> orders{}; // measured for this very picture beforehand; none = it is not
+    double other_work = infinity;        // of another mode to the error, which follows where this one misses it
 };
 
 // Of what a candidate rendered; each but the last may ask for a finer one.

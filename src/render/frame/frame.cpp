@@ -81,6 +81,15 @@ void FrameStats::add(const FrameStats& other) {
     non_finite += other.non_finite, samples += other.samples, moments = std::max(moments, other.moments);
 }
 
+void FrameStats::add_lost(const FrameStats& missed) {
+    prepare_seconds += missed.prepare_seconds, render_seconds += missed.render_seconds;
+    fog_seconds += missed.fog_seconds;
+    camera_rays += missed.camera_rays, steps += missed.steps;
+    forecast_seconds =
+        missed.forecast_seconds < infinity ? missed.forecast_seconds : missed.goal_seconds + forecast_seconds;
+    goal_seconds += missed.goal_seconds;
+}
+
 std::optional<Noise> FrameStats::error() const {
     if (!noise) return noise;
     const Noise none, &systematic = integrator ? integrator->error : none, &grid = orders ? orders->pixels : none;

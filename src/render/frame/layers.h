@@ -91,6 +91,7 @@ struct FrameStats {
     bool is_noise_alone() const { return !integrator && !orders && !moments_error; }
 
     void add(const FrameStats& other);          // counts and times
+    void add_lost(const FrameStats& missed);    // the cost of a picture thrown away, and what was forecast for the goal
     void drop(ivec2 pixel, uint64_t count = 1); // samples of it that are not finite
 };
 

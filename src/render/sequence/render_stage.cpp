@@ -75,8 +75,10 @@ void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
     Goal goal{pipeline.request.target_error, 0, pipeline.request.quality};
     if (work.index == 0) goal.choice = plan.main;
     options.history = nullptr;
-    work.layers =
-        render_to_target(main_mode(), work.view, work.snapshot, work.by->settings, goal, options, work.report.stats);
+    FrameStats& stats = work.report.stats;
+    const FrameStats missed = stats;
+    work.layers = render_to_target(main_mode(), work.view, work.snapshot, work.by->settings, goal, options, stats);
+    stats.add_lost(missed);
 }
 
 // The part of the frame's samples that was asked for, from its last checkpoint on.
@@ -119,7 +121,8 @@ void render(Pipeline& pipeline, Work& work) {
                         {},
                         work.index == 0 ? plan.choice : nullptr,
                         plan.wanted,
-                        work.index == 0 ? plan.orders : std::nullopt};
+                        work.index == 0 ? plan.orders : std::nullopt,
+                        plan.main ? plan.main->work_to(request.target_error) : infinity};
         options.forecast = [&](double seconds) { say_forecast(pipeline, work, seconds); };
         if (is_part(request.grouping))
             render_own_part(pipeline, options, work);

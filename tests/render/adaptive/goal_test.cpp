@@ -182,6 +182,24 @@ TEST(Goal, ChecksAreIndependentOfEachOtherAndOfTheChoice) {
     }
 }
 
+// Nor is more seen of a doubtful error than another mode would cost.
+TEST(Goal, WhatSeemsToMissTheTargetIsLookedAtNoLongerThanAnotherModeTakes) {
+    const Example example("window");
+    Goal goal{1, 0, Quality::preview, steady_seconds};
+    const Choice choice = choose(main_mode(), example.view, example.snapshot, example.settings, goal, 0, {});
+    const auto integrator = [&] {
+        return checked(choice, choice.scout->layers, {}, 4, infinity, main_mode(), example.view, example.snapshot,
+                       example.settings, goal, 1, {})
+            .measured.integrator;
+    };
+    goal.error = std::sqrt(choice.measured.integrator.value), goal.other_work = 0;
+    const SquaredError first = integrator();
+    goal.error = std::sqrt(first.value); // less than the bound: whether it is met shows on more tiles only
+    EXPECT_EQ(integrator().bound, first.bound);
+    goal.other_work = infinity;
+    EXPECT_NE(integrator().bound, first.bound);
+}
+
 TEST(Goal, PicturesOfATargetHaveTheSameBitsForAnyThreadCount) {
     const Example example("window");
     const auto made = [&] { return to_goal(example, {0.1, 0, Quality::preview, {}}); };

@@ -144,7 +144,7 @@ TEST(Sequence, ReportsItselfAsJson) {
     EXPECT_GT(totals->number_or("peak_memory_bytes", 0), 0);
 }
 
-// A cone knows no shadows of pillars.
+// A cone knows no shadows of pillars. What it took counts.
 TEST(Sequence, WhatThePlansTechniqueIsTooFarOffForIsRenderedByTheMainOne) {
     const Scratch out;
     const Scene scene = load_scene(std::filesystem::path(TYNDALL_SOURCE_DIR) / "scenes/pillars.json");
@@ -153,10 +153,22 @@ TEST(Sequence, WhatThePlansTechniqueIsTooFarOffForIsRenderedByTheMainOne) {
     Progress progress(ProgressStyle::none, "render", 1);
     std::atomic<bool> cancel = false;
     RenderPlan plan{&find_mode("cone"), job.settings, "chosen", nullptr, nullptr};
-    EXPECT_EQ(render_sequence(scene, job, plan, progress, cancel).missed, 1) << "asked for by name";
+    const RenderReport alone = render_sequence(scene, job, plan, progress, cancel);
+    EXPECT_EQ(alone.missed, 1) << "asked for by name";
     EXPECT_EQ(read_exr(out.file("f.exr")).attributes.at("tyndall:mode"), "cone");
     plan.wanted = std::make_shared<const Settings>(job.settings);
-    EXPECT_EQ(render_sequence(scene, job, plan, progress, cancel).missed, 0);
+    const RenderReport both = render_sequence(scene, job, plan, progress, cancel);
+    EXPECT_EQ(both.missed, 0);
     EXPECT_EQ(read_exr(out.file("f.exr")).attributes.at("tyndall:mode"), "march");
+
+    RenderRequest march = job;
+    march.mode = "march";
+    const RenderReport by_march = render_sequence(scene, march, plan_as_asked(march), progress, cancel);
+    const FrameStats &cone = alone.frames[0].stats, &main = by_march.frames[0].stats, &sum = both.frames[0].stats;
+    EXPECT_EQ(sum.camera_rays, cone.camera_rays + main.camera_rays);
+    EXPECT_EQ(sum.steps, cone.steps + main.steps);
+    EXPECT_EQ(sum.samples, main.samples);
+    EXPECT_GE(both.frames[0].seconds, sum.goal_seconds);
+    EXPECT_GE(sum.goal_seconds, sum.prepare_seconds + sum.render_seconds) << "of both";
 }
 }
