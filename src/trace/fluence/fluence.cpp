@@ -9,6 +9,7 @@
 #include "scene/photometry/ies_profile.h"
 #include "trace/fluence/light_paths.h"
 #include "trace/fluence/settings.h"
+#include "trace/fluence/smoothing.h"
 #include "trace/fluence/walls.h"
 #include "trace/frame_cache.h"
 #include "trace/lights/environment.h"
@@ -91,6 +92,22 @@ void add_flights(const std::vector<LightPathResult>& blocks, FluenceGrid& grid, 
         for (const LightPathResult& block : blocks)
             for (const Flight& flight : block.flights) add_flight(flight, first, last, grid, octants);
     });
+}
+
+// Follows every other path, from `first` on.
+void add_half(const Snapshot& snapshot, const RayStrata& strata, const LightPathRules& rules, int64_t paths, int first,
+              FluenceGrid& grid, FluenceOctants& octants) {
+    const int64_t half = (paths + 1 - first) / 2;
+    std::vector<LightPathResult> blocks(static_cast<size_t>(round_blocks));
+    for (int64_t round = 0; round < half; round += round_blocks * block_paths) {
+        parallel_for(round_blocks, [&](int64_t b) {
+            LightPathResult& result = blocks[static_cast<size_t>(b)];
+            result.flights.clear();
+            const int64_t done = round + b * block_paths, count = std::min(block_paths, half - done);
+            if (count > 0) trace_light_paths(snapshot, strata, rules, first + 2 * done, count, paths, result, 2);
+        });
+        add_flights(blocks, grid, octants);
+    }
 }
 
 // What a pilot's paths brought, by stratum.
@@ -222,22 +239,20 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
     rules.noted = grid.bounds, rules.orders = settings.orders, rules.seed = seed;
     const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
     FluenceOctants octants(surfaces ? grid.values.size() / 12 * 8 : 0, vec4(0));
-    const int64_t paths = settings.paths;
-    const RayStrata strata = strata_by_pilot(snapshot, rules, paths);
-    std::vector<LightPathResult> blocks(static_cast<size_t>(round_blocks));
-    for (int64_t round = 0; round < paths; round += round_blocks * block_paths) {
-        parallel_for(round_blocks, [&](int64_t b) {
-            LightPathResult& result = blocks[static_cast<size_t>(b)];
-            result.flights.clear();
-            const int64_t first = round + b * block_paths, count = std::min(block_paths, paths - first);
-            if (count > 0) trace_light_paths(snapshot, strata, rules, first, count, paths, result);
-        });
-        add_flights(blocks, grid, octants);
-    }
+    const RayStrata strata = strata_by_pilot(snapshot, rules, settings.paths);
+
+    // Two halves, by turns: how far they are apart tells what noise there is.
+    add_half(snapshot, strata, rules, settings.paths, 0, grid, octants);
+    std::vector<float> difference(grid.values.size(), 0.0f);
+    std::swap(difference, grid.values);
+    add_half(snapshot, strata, rules, settings.paths, 1, grid, octants);
     const float volume = grid.cell * grid.cell * grid.cell;
-    for (float& value : grid.values) value /= volume;
-    if (surfaces) find_walls(*snapshot.occluders, octants, grid);
-    smooth(grid);
+    for (size_t i = 0; i < difference.size(); ++i) {
+        const float one = difference[i] / volume, other = grid.values[i] / volume;
+        grid.values[i] = one + other, difference[i] = one - other;
+    }
+    if (surfaces) find_walls(*snapshot.occluders, octants, grid, difference);
+    smooth(std::move(difference), grid);
     return grid;
 }
 

@@ -1,6 +1,6 @@
 // Light in the fog that has been scattered before: a grid of fluence and flux, filled by the flights of light paths
-// (track-length estimator: Spanier & Gelbard 1969) and smoothed over neighbouring cells. What it scatters towards the
-// eye is added to exact single scattering.
+// (track-length estimator: Spanier & Gelbard 1969) and smoothed where noise hides the light. What it scatters towards
+// the eye is added to exact single scattering.
 //
 // Around each point the light is taken for a Henyey–Greenstein lobe about the flux F with the mean cosine |F|/φ. Fog of
 // mean cosine g turns it into a lobe of mean cosine g|F|/φ: exact for a beam scattered twice in thin fog and for light

@@ -222,13 +222,14 @@ RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side) {
 }
 
 void trace_light_paths(const Snapshot& snapshot, const RayStrata& strata, const LightPathRules& rules, int64_t first,
-                       int64_t count, int64_t total, LightPathResult& result) {
+                       int64_t count, int64_t total, LightPathResult& result, int64_t step) {
     const std::vector<LightSquare> squares = squares_of(snapshot, rules.reach);
     const Walk walk{snapshot, strata, rules, squares, std::ranges::any_of(snapshot.media, is_endless), result};
     PathVertex walkers[walkers_at_once];
     for (int64_t done = 0; done < count; done += walkers_at_once) {
         const size_t some = static_cast<size_t>(std::min<int64_t>(walkers_at_once, count - done));
-        for (size_t i = 0; i < some; ++i) walkers[i] = start(walk, first + done + static_cast<int64_t>(i), total);
+        for (size_t i = 0; i < some; ++i)
+            walkers[i] = start(walk, first + step * (done + static_cast<int64_t>(i)), total);
         for (;;) {
             PathVertex* walking[walkers_at_once];
             size_t left = 0;

@@ -45,10 +45,10 @@ struct LightPathResult {
     std::vector<float> of_stratum{}; // per stratum: Σ over paths of (power · length of the flights)²; empty = not asked
 };
 
-// Paths first..first+count-1 of `total`: they share the strata evenly, and each has random numbers of its own. The
-// result adds up to an estimate of the whole when all `total` are taken.
+// `count` paths of `total`, from `first` on, each `step` after the one before: all share the strata evenly, and each
+// has random numbers of its own. The result adds up to an estimate of the whole when all `total` are taken.
 void trace_light_paths(const Snapshot& snapshot, const RayStrata& strata, const LightPathRules& rules, int64_t first,
-                       int64_t count, int64_t total, LightPathResult& result);
+                       int64_t count, int64_t total, LightPathResult& result, int64_t step = 1);
 
 // Where light paths go: fog and surfaces, and of endless fog as far beyond as its light comes back from.
 Box light_reach(const Snapshot& snapshot);

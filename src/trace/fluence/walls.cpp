@@ -15,8 +15,9 @@ struct Cells {
     const Occluders& occluders;
     const FluenceOctants& octants;
     FluenceGrid& grid;
-    Box surfaces{};          // their bounds, in cells
-    std::vector<vec3> lit{}; // a place in the light of each cell, in cells; the centre of dark ones
+    std::vector<float>& difference; // scaled as the grid is
+    Box surfaces{};                 // their bounds, in cells
+    std::vector<vec3> lit{};        // a place in the light of each cell, in cells; the centre of dark ones
 
     size_t index(ivec3 cell) const { return cell_index(grid, cell); }
     vec3 world(vec3 place) const { return grid.bounds.low + grid.cell * place; }
@@ -141,9 +142,9 @@ float share_here(const Cells& cells, ivec3 cell) {
 // Keeps of a cell the light that shines where most of it does, over the part of the cell that lies there.
 void keep_one_side(const Cells& cells, ivec3 cell) {
     const Probed probed = probe(cells, cell);
-    float* values = &cells.grid.values[12 * cells.index(cell)];
+    const size_t first = 12 * cells.index(cell);
     const float more = share_here(cells, cell) * probes / static_cast<float>(std::max(probed.seen, 1));
-    for (int i = 0; i < 12; ++i) values[i] *= more;
+    for (size_t i = first; i < first + 12; ++i) cells.grid.values[i] *= more, cells.difference[i] *= more;
     if (const float length = glm::length(probed.side); length > 0)
         cells.grid.cuts[cells.index(cell)] = vec4(probed.side, -glm::dot(probed.side, probed.met)) / length;
 }
@@ -154,33 +155,11 @@ void for_each_cell(ivec3 size, const auto& visit) {
             for (int z = 0; z < size.z; ++z) visit(ivec3(static_cast<int>(x), y, z));
     });
 }
-
-void smooth_along(int axis, FluenceGrid& grid) {
-    const ivec3 size = grid.size;
-    const int across = (axis + 1) % 3, up = (axis + 2) % 3;
-    const auto at = [&](ivec3 cell) { return grid.values.data() + 12 * cell_index(grid, cell); };
-    parallel_for(int64_t{size[across]} * size[up], [&](int64_t line) {
-        ivec3 cell(0);
-        cell[across] = static_cast<int>(line) / size[up], cell[up] = static_cast<int>(line) % size[up];
-        std::array<float, 12> before, here, after;
-        std::copy_n(at(cell), 12, before.begin());
-        here = before;
-        for (int i = 0; i < size[axis]; ++i) {
-            cell[axis] = i;
-            float* values = at(cell);
-            const bool wall = !grid.walls.empty() && grid.walls[cell_index(grid, cell)] >> axis & 1;
-            cell[axis] = std::min(i + 1, size[axis] - 1);
-            std::copy_n(at(cell), 12, after.begin());
-            const std::array<float, 12>& next = wall ? here : after;
-            for (size_t k = 0; k < 12; ++k) values[k] = 0.25f * (before[k] + next[k]) + 0.5f * here[k];
-            before = wall ? after : here, here = after;
-        }
-    });
-}
 }
 
-void find_walls(const Occluders& occluders, const FluenceOctants& octants, FluenceGrid& grid) {
-    Cells cells{occluders, octants, grid};
+void find_walls(const Occluders& occluders, const FluenceOctants& octants, FluenceGrid& grid,
+                std::vector<float>& difference) {
+    Cells cells{occluders, octants, grid, difference};
     const Box bounds = occluders.bounds();
     cells.surfaces = {(bounds.low - grid.bounds.low) / grid.cell, (bounds.high - grid.bounds.low) / grid.cell};
     cells.lit.resize(grid.values.size() / 12), grid.walls.assign(cells.lit.size(), 0);
@@ -197,9 +176,5 @@ void find_walls(const Occluders& occluders, const FluenceOctants& octants, Fluen
     for_each_cell(grid.size, [&](ivec3 cell) {
         if (!is_dark(cells, cell) && is_cut(cells, cell)) keep_one_side(cells, cell);
     });
-}
-
-void smooth(FluenceGrid& grid) {
-    for (int axis = 0; axis < 3; ++axis) smooth_along(axis, grid);
 }
 }

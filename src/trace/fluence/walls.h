@@ -7,11 +7,8 @@ namespace tyndall {
 // Where in the cells light flew, [8 · cell + octant]: ∫ luminance, w, and of places (in cells) times it.
 using FluenceOctants = std::vector<vec4>;
 
-// Sets the grid's walls and cuts. Of a cell that a surface cuts, the light of the brighter side stays, as if all the
-// cell lay there. `grid.values` are means over whole cells.
-void find_walls(const Occluders& occluders, const FluenceOctants& octants, FluenceGrid& grid);
-
-// Means of three cells along each axis, the middle one twice: takes most of the noise and no detail that cells a little
-// larger would keep. What leaves at walls and at the borders of the grid comes back.
-void smooth(FluenceGrid& grid);
+// Sets the grid's walls and cuts. Of a cell that a surface cuts, the light of the brighter side stays, as if
+// all the cell lay there; of `difference` as well. `grid.values` are means over whole cells.
+void find_walls(const Occluders& occluders, const FluenceOctants& octants, FluenceGrid& grid,
+                std::vector<float>& difference);
 }
