@@ -74,7 +74,7 @@ void smooth(std::vector<float> difference, FluenceGrid& grid) {
         std::vector<float> coarser = grid.values, coarser_noise = difference;
         smooth_by<12>(stride, grid, coarser), smooth_by<12>(stride, grid, coarser_noise);
         std::vector<float> powers = powers_of(grid.values, coarser, difference, coarser_noise);
-        for (int around = 1; around <= 2 * stride; around *= 2) smooth_by<2>(around, grid, powers);
+        for (int around = 1; around <= stride; around *= 2) smooth_by<2>(around, grid, powers);
         // No less than of finer details: so each cell is a mean of the filters, and light stays above 0.
         for_cells(cells, [&](size_t cell) {
             const float all = powers[2 * cell], noise = powers[2 * cell + 1];
