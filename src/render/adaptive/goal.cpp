@@ -1,10 +1,10 @@
 #include "render/adaptive/goal.h"
+
 #include "base/clock.h"
 #include "modes/mode.h"
 #include "render/adaptive/orders.h"
 
 #include <algorithm>
-#include <cassert>
 #include <list>
 #include <optional>
 #include <ranges>
@@ -131,18 +131,6 @@ std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start, Squ
 }
 }
 
-bool has_rivals(const Choice& choice, const Mode& mode) {
-    return choice.scout && choice.scout->mode->name != mode.name;
-}
-
-double noise_target(const Choice& choice, double error) {
-    const double bound = choice.has_integrator ? choice.measured.integrator.bound : 0;
-    if (bound == 0) return error;
-    const double squared = error * error;
-    if (bound < squared) return std::sqrt(squared - bound);
-    return std::max(error * integrator_share, 0.1 * std::sqrt(bound));
-}
-
 std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, const Snapshot& snapshot,
                                          const Settings& settings, Goal& goal, const FrameOptions& options) {
     if (!takes_fluence(mode, settings)) return {};
@@ -153,35 +141,6 @@ std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, con
         goal.orders ? *goal.orders : orders_error(mode, view, snapshot, settings, goal.error, options, stop);
     if (goal.error > 0) goal.error = error_beside(orders.pixels, goal.error).value_or(goal.error); // else it is missed
     return orders;
-}
-
-bool leaves_room(const Choice& choice, double error) {
-    return choice.measured.integrator.bound <= std::pow(integrator_share * error, 2);
-}
-
-Allotment Choice::spread(const Enough& enough, int unit) const {
-    assert(scout);
-    Enough of_scout = enough;
-    of_scout.squared_error /= noise_ratio;
-    Allotment result = allot(scout->layers, scout_samples, of_scout, power, unit);
-    result.squared_error *= noise_ratio;
-    return result;
-}
-
-double Choice::samples_to(double error) const {
-    const double left = error * error - measured.integrator.bound;
-    if (!(left > 0) || !scout) return infinity;
-    const double pixels = static_cast<double>(scout->layers.size.x) * scout->layers.size.y;
-    return spread({left, infinity}, scout_samples).rays / pixels;
-}
-
-double Choice::work_to(double error) const { return samples_to(error) * measured.sample_work; }
-
-double Choice::expected(double samples) const {
-    if (samples < 2) return measured.integrator.value + measured.sample.value;
-    if (!scout) return measured.integrator.value + measured.sample.value / std::pow(samples, power);
-    const double pixels = static_cast<double>(scout->layers.size.x) * scout->layers.size.y;
-    return measured.integrator.value + spread({0, samples * pixels}, scout_samples).squared_error;
 }
 
 namespace {
@@ -274,13 +233,6 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
         if (noisy || now + 3 * (now - begun) > measuring_share * goal.seconds) break;
     }
     return std::move(*best);
-}
-
-double check_seconds(const Choice& choice) {
-    if (!choice.has_integrator || choice.is_truth || !choice.pilot) return 0;
-    const Pilot& pilot = *choice.pilot;
-    const double own = choice.measured.sample_seconds * pilot.samples() / pilot.pixels();
-    return (pilot.cost.seconds + own) / (pilot.drawings * pilot.passes);
 }
 
 Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double samples, double until,

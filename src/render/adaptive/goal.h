@@ -1,34 +1,8 @@
-// What a picture is rendered until, and the candidate that gets there.
+// What a picture is rendered until, and which candidate gets there.
 #pragma once
-#include "render/adaptive/allotment.h"
-#include "render/adaptive/scout.h"
+#include "render/adaptive/choice.h"
 
 namespace tyndall {
-struct Choice {
-    Candidate candidate;
-    Measured measured;
-    bool has_integrator = false;             // otherwise noise is the only error
-    bool is_truth = false;                   // the candidate is what pictures are held against
-    double power = 1;                        // of the samples by which their variance falls
-    double noise_ratio = 1;                  // its variance of one sample over that of the scout
-    double pace = 1;                         // time of the whole picture over what the pilot made expect
-    std::shared_ptr<const Scout> scout = {}; // null = there was no time for one
-    std::shared_ptr<Pilot> pilot = {};       // the truth it was held against
-    double scout_variance = 0;               // of one sample of the scout, on the pilot's tiles
-
-    // How samples are best spread for an error or a number of rays; by the scout, which there must be.
-    Allotment spread(const Enough& enough, int unit) const;
-
-    // Samples per pixel that get to an error, on the average; infinite where that is out of reach.
-    double samples_to(double error) const;
-
-    // To render them.
-    double work_to(double error) const;
-
-    // The squared error to expect of so many samples per pixel, on the average.
-    double expected(double samples) const;
-};
-
 struct Goal {
     double error = 0;                       // as a share of the picture's mean; 0 = none is asked for
     double seconds = 0;                     // to measure, prepare and render in; 0 = as many as it takes
@@ -45,22 +19,9 @@ struct Goal {
 // Of what a candidate rendered; each but the last may ask for a finer one.
 inline constexpr uint32_t max_checks = 3;
 
-// Share of the error wanted that the integrator may use up.
-inline constexpr double integrator_share = 0.7;
-
-// Whether a mode's choice was made beside other modes, by what the first image of the main one shows.
-bool has_rivals(const Choice& choice, const Mode& mode);
-
-// What a choice's integrator leaves of an error for noise; where it leaves nothing, noise need not be smaller than a
-// tenth of it.
-double noise_target(const Choice& choice, double error);
-
 // How far light of several orders is off, where it is part of the image; the goal is left what that leaves of it.
 std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, const Snapshot& snapshot,
                                          const Settings& settings, Goal& goal, const FrameOptions& options);
-
-// Whether what samples do not remove leaves enough of the error wanted for noise.
-bool leaves_room(const Choice& choice, double error);
 
 // With an error asked for, the candidate that is likely to get there with least work, up to the first whose bound
 // leaves enough for noise; or the finest; what comes before the first that gains nothing, where set rows keep
@@ -68,9 +29,6 @@ bool leaves_room(const Choice& choice, double error);
 // when they began; with both, the first that reaches the error in time. Seconds make the choice depend on the machine.
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options);
-
-// What checked() is likely to take.
-double check_seconds(const Choice& choice);
 
 // What a finished picture's integrator leaves, on tiles that it says errors may be in, independent of those that the
 // candidate was chosen by. Where that and the picture's noise are too much for the goal, a finer candidate may take its
