@@ -6,9 +6,7 @@
 #include "base/io/output.h"
 #include "base/text.h"
 #include "common.h"
-#include "modes/limitation.h"
 #include "modes/mode.h"
-#include "render/adaptive/orders.h"
 #include "render/adaptive/to_target.h"
 #include "render/parts/manifest.h"
 #include "render/parts/part_file.h"
@@ -16,11 +14,11 @@
 #include "render/sequence/auto_exposure.h"
 #include "render/sequence/sequence.h"
 #include "rendering/automatic.h"
+#include "rendering/remarks.h"
 #include "rendering/render_options.h"
 #include "rendering/sheet.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "trace/lights/enclosed_lights.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 
@@ -34,42 +32,6 @@ void choose_frames(const Scene& scene, const std::string& order, RenderRequest& 
     if (request.frames.empty()) request.frames = frames_between(scene.first_frame, scene.last_frame);
     if (order == "spread") request.frames = spread_frames(request.frames);
     check_pattern(request.output, ".exr", request.frames.size() > 1);
-}
-
-// Where the mode fails on this scene, from the first frame, with the settings it begins with.
-Limitations limitations_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
-                           const Snapshot& snapshot) {
-    View view;
-    view.camera = camera_at(scene, find_camera(scene, request.camera), snapshot.seconds);
-    view.shutter = view_of(scene, request, plan.settings, snapshot.frame).shutter;
-    view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
-    return plan.mode->limitations(view, snapshot, plan.choice ? plan.choice->candidate.settings : plan.settings);
-}
-
-// How far multiple scattering is off, where an image is not rendered to a goal, which counts it.
-void add_orders(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const Snapshot& snapshot,
-                Limitations& limitations) {
-    if (has_goal(request) || is_part(request.grouping) || !takes_fluence(*plan.mode, plan.settings)) return;
-    const View view = view_of(scene, request, plan.settings, request.frames[0]);
-    const FrameOptions options{false, nullptr, &cancel_flag(), {}, {}};
-    limitations.push_back(limitation_of(orders_error(*plan.mode, view, snapshot, plan.settings, 0, options)));
-}
-
-// What the picture will not show: warnings of the files, then limitations of the mode; mere remarks only when verbose.
-void say_limitations(const Scene& scene, const Snapshot& first, const Limitations& limitations,
-                     const Globals& globals) {
-    if (globals.quiet) return;
-    if (globals.verbose)
-        for (const auto& input : scene.inputs) say("reads " + printable(input.path.string(), 460));
-    for (const std::string& warning : scene.warnings) say("warning: " + printable(warning, 460));
-    for (const std::string& line : enclosed_lights(first)) say("warning: " + printable(line, 460));
-    for (const LimitationGroup& group : groups_of(limitations))
-        if (globals.verbose || group.worst.severity != Severity::info) say(line_of(group));
-}
-
-void say_rounding(const RenderRequest& request, const Globals& globals) {
-    if (!globals.quiet && request.target_error > 0 && request.target_error < 1e-3 && !request.exr.full_float)
-        say("note: 16 bit floats round by up to 0.0005 of a value: add --float");
 }
 
 // Takes as many samples as measuring noise needs, and says so; half floats hide the last of it.
@@ -86,51 +48,12 @@ void settle_noise(const RenderRequest& request, RenderPlan& plan, const Globals&
     say_rounding(request, globals);
 }
 
-// Settings that the mode does not read.
-void say_idle_settings(const std::vector<std::string>& settings, const Mode& mode, const Globals& globals) {
-    if (globals.quiet) return;
-    for (const std::string& setting : settings)
-        if (!reads(mode, setting.substr(0, setting.find('='))))
-            say("note: " + printable(setting, 60) + " changes nothing: the mode is " + std::string(mode.name));
-}
-
-void say_summary(const RenderReport& report, const RenderRequest& request) {
-    int kept = 0;
-    for (const FrameReport& frame : report.frames) kept += frame.kept;
-    const int rendered = static_cast<int>(report.frames.size()) - kept;
-    std::string line = count_text(rendered, "frame") + " rendered in " + seconds_text(report.seconds);
-    if (rendered > 1) line += " (" + seconds_text(report.seconds / rendered) + " a frame)";
-    if (kept > 0) line += formatted(", %d kept", kept);
-    say(line + ", " + printable(request.output));
-}
-
-// Where the pictures are, or how to get some that any program shows.
-void say_look(const RenderRequest& request) {
-    const std::string first = request.frames.empty() ? request.output : frame_name(request.output, request.frames[0]);
-    if (request.png)
-        say("look: " + printable(std::filesystem::path(first).replace_extension(".png").string()));
-    else
-        say("look: add --png for images that any program shows; the .exr opens in tev, Blender, Nuke and others");
-}
-
 // What was asked for, decided and made.
 struct Rendered {
     RenderRequest request;
     RenderPlan plan;
     RenderReport report;
 };
-
-void say_before(const Scene& scene, const Snapshot& first, const Limitations& limitations, const RenderOptions& texts,
-                const Rendered& one, const Globals& globals) {
-    say_idle_settings(texts.settings, *one.plan.mode, globals);
-    if (one.request.history > 0 && !one.plan.mode->remembers && !globals.quiet)
-        say("note: --history changes nothing: " + std::string(one.plan.mode->name) + " has no memory");
-    if (one.request.history > 0 && one.plan.mode->remembers && is_chromatic(first))
-        fail(ExitCode::usage, "--history", "does not go with fog whose extinction differs between the channels");
-    if (one.request.time_samples > 0 && !first.moments && !globals.quiet)
-        say("note: --time-samples changes nothing: the shutter is closed, or nothing moves while it is open");
-    say_limitations(scene, first, limitations, globals);
-}
 
 std::string stats_name(const RenderOptions& texts, const RenderRequest& request, bool several) {
     return texts.stats.empty() || !several ? texts.stats : with_word(texts.stats, request.mode);
@@ -155,13 +78,6 @@ void measure_exposure(const Scene& scene, std::span<const RenderRequest> request
         say(formatted("PNGs: automatic exposure, %+.1f EV (--exposure sets another)", *common.exposure));
 }
 
-void say_files_found(const RenderRequest& request, const Globals& globals) {
-    if (!request.files || !globals.verbose || globals.quiet) return;
-    for (const CacheCost& cost : request.files->costs)
-        if (cost.kind == CostKind::found)
-            say("found " + printable(cost.file, 200) + formatted(", which took %.3f s to make", cost.seconds));
-}
-
 // Renders the frames of one of the requests and reports on them; json is the statistics file's name, empty for none.
 Rendered render_frames(const Scene& scene, std::span<const RenderRequest> requests, const RenderRequest& request,
                        const RenderOptions& texts, Common& common, const Globals& globals) {
@@ -179,10 +95,11 @@ Rendered render_frames(const Scene& scene, std::span<const RenderRequest> reques
     result.plan.exposure = common.exposure;
     common.first = request.frames.size() == 1 ? first.snapshot : Snapshot{};
     common.first.cache = nullptr; // the time that a mode takes must not depend on the one before it
-    Limitations limitations = limitations_of(scene, request, result.plan, first.snapshot);
-    if (!globals.quiet || globals.json || !texts.stats.empty())
-        add_orders(scene, request, result.plan, first.snapshot, limitations);
-    say_before(scene, first.snapshot, limitations, texts, result, globals);
+    const bool measured = !globals.quiet || globals.json || !texts.stats.empty();
+    Limitations limitations = limitations_of(scene, request, result.plan, first.snapshot, measured);
+    if (request.history > 0 && result.plan.mode->remembers && is_chromatic(first.snapshot))
+        fail(ExitCode::usage, "--history", "does not go with fog whose extinction differs between the channels");
+    say_before(scene, first.snapshot, limitations, texts.settings, request, *result.plan.mode, globals);
 
     Progress progress(globals.progress, several ? request.mode : "render", static_cast<double>(request.frames.size()),
                       globals.json);
@@ -285,46 +202,57 @@ std::shared_ptr<CacheFolder> prepared_files(const RenderOptions& texts, const Sa
     return files;
 }
 
-int run_render(const RenderOptions& texts, const Globals& globals) {
-    std::optional<SavedPlan> saved;
-    std::vector<RenderRequest> requests = requests_of(texts, saved);
-    const bool several = requests.size() > 1;
+// Refuses what does not go together, and files that cannot be written.
+void check_requests(const RenderOptions& texts, std::vector<RenderRequest>& requests, OutputPlaces& places) {
     choice_among("--order", texts.order, {"listed", "spread"});
-    const LoadOptions options = saved ? LoadOptions{saved->request.light_units} : load_options(texts);
-    if (!several && !texts.sheet_reference.empty())
+    if (requests.size() == 1 && !texts.sheet_reference.empty())
         fail(ExitCode::usage, "--reference", "is for the sheet of several modes; tyndall compare measures one image");
-    if (is_part(requests[0].grouping))
-        set_stop_remark("; what is finished is kept, --resume continues", 10);
-    else
-        set_stop_remark("; finished frames are kept, --resume continues");
-    OutputPlaces places;
-    for (RenderRequest& request : requests) {
-        request.light_units = options.light_units;
+    for (const RenderRequest& request : requests) {
         if (!request.frames.empty())
             places.check(request.output, request.frames);
         else
             places.check(std::filesystem::path(frame_name(request.output, 1)));
-        if (!texts.stats.empty()) places.check(std::filesystem::path(stats_name(texts, request, several)));
+        if (!texts.stats.empty()) places.check(std::filesystem::path(stats_name(texts, request, requests.size() > 1)));
     }
+}
 
-    const Scene scene = load_scene(requests[0].scene_file, options);
-    if (saved) check_inputs(*saved, scene);
-    if (saved) requests[0].files = prepared_files(texts, *saved, requests[0].frames, globals);
-    stop_if_cancelled();
+// The same, once the scene is known.
+void check_with_scene(const Scene& scene, const RenderOptions& texts, std::vector<RenderRequest>& requests,
+                      OutputPlaces& places) {
+    const auto size_of = [&](const RenderRequest& request) {
+        return request.resolution.x > 0 ? request.resolution : scene.resolution;
+    };
     for (RenderRequest& request : requests) {
         choose_frames(scene, texts.order, request);
         places.check(request.output, request.frames);
         find_camera(scene, request.camera);
-        check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);
+        check_crop(request, size_of(request));
         if (is_part(request.grouping))
             range_of(request.grouping, find_mode(request.mode),
                      view_of(scene, request, request.settings, request.frames[0]));
     }
     if (!texts.sheet_reference.empty())
-        check_sheet_reference(texts.sheet_reference, requests[0].frames,
-                              requests[0].resolution.x > 0 ? requests[0].resolution : scene.resolution);
-    if (several)
+        check_sheet_reference(texts.sheet_reference, requests[0].frames, size_of(requests[0]));
+    if (requests.size() > 1)
         for (const int frame : requests[0].frames) places.check(std::filesystem::path(sheet_name(texts, frame)));
+}
+
+int run_render(const RenderOptions& texts, const Globals& globals) {
+    std::optional<SavedPlan> saved;
+    std::vector<RenderRequest> requests = requests_of(texts, saved);
+    const bool several = requests.size() > 1, part = is_part(requests[0].grouping);
+    const LoadOptions options = saved ? LoadOptions{saved->request.light_units} : load_options(texts);
+    for (RenderRequest& request : requests) request.light_units = options.light_units;
+    OutputPlaces places;
+    check_requests(texts, requests, places);
+    set_stop_remark(part ? "; what is finished is kept, --resume continues"
+                         : "; finished frames are kept, --resume continues",
+                    part ? 10 : 1);
+    const Scene scene = load_scene(requests[0].scene_file, options);
+    if (saved) check_inputs(*saved, scene);
+    if (saved) requests[0].files = prepared_files(texts, *saved, requests[0].frames, globals);
+    stop_if_cancelled();
+    check_with_scene(scene, texts, requests, places);
 
     std::vector<Rendered> all;
     std::string reports;
