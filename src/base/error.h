@@ -38,6 +38,15 @@ public:
 [[noreturn]] void fail(ExitCode code, std::string_view where, std::string_view what);
 [[noreturn]] void refuse(std::string_view where, std::string_view what); // input is wrong: exit code 3
 
+// Runs `body`; an Error that it throws gets `where` in front.
+decltype(auto) within(std::string_view where, const auto& body) {
+    try {
+        return body();
+    } catch (const Error& error) {
+        fail(error.code, where, error.what());
+    }
+}
+
 // Foreign text made fit for one line of output: control bytes escaped, cut to `most` bytes.
 std::string printable(std::string_view text, size_t most = 200);
 }

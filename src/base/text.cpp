@@ -65,6 +65,11 @@ std::string count_text(uint64_t count, std::string_view noun) {
     return std::to_string(count) + " " + std::string(noun) + (count == 1 ? "" : noun.ends_with("sh") ? "es" : "s");
 }
 
+std::string named(std::string_view kind, std::string_view name) {
+    const bool said = name.starts_with(std::string(kind) + " ");
+    return said ? std::string(name) : std::string(kind) + " " + std::string(name);
+}
+
 std::string wrapped(std::string_view text, size_t width, size_t indent) {
     std::string result;
     while (text.size() > width) {

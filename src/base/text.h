@@ -32,6 +32,9 @@ std::string seconds_text(double seconds);
 std::string bytes_text(double bytes);
 std::string count_text(uint64_t count, std::string_view noun);
 
+// "light Key", but "light 1" of what has only its kind and number for a name.
+std::string named(std::string_view kind, std::string_view name);
+
 // Lines of at most `width` bytes, broken at spaces; all but the first begin with `indent` spaces.
 std::string wrapped(std::string_view text, size_t width, size_t indent);
 

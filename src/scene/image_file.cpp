@@ -3,7 +3,9 @@
 #include "base/error.h"
 #include "base/exr/exr_picture.h"
 #include "base/io/file.h"
+#include "scene/radiance_file.h"
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -11,7 +13,6 @@
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
-#define STBI_ONLY_HDR
 #define STBI_NO_STDIO
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
@@ -38,10 +39,10 @@ void check_length(std::string_view bytes, std::string_view where) {
     if (bytes.size() > size_t{1} << 30) refuse(where, "the image file is over 1 GiB");
 }
 
-// The library gives no reason where it reads past the end.
-[[noreturn]] void refuse_undecodable(std::string_view where, std::string_view what) {
-    const char* reason = stbi_failure_reason();
-    refuse(where, std::string(what) + ": " + (reason ? reason : "it is damaged"));
+// The library's reasons are words of its code.
+[[noreturn]] void refuse_damaged(std::string_view where) {
+    const std::string_view reason = stbi_failure_reason() ? stbi_failure_reason() : "";
+    refuse(where, reason == "outofdata" ? "the image is cut off" : "the image is cut off or damaged");
 }
 
 // IEC 61966-2-1.
@@ -54,19 +55,6 @@ const std::array<float, 256>& linear_table() {
         return values;
     }();
     return table;
-}
-
-Image<vec3> decode_radiance(std::string_view bytes, std::string_view where) {
-    ivec2 size;
-    int channels;
-    const std::unique_ptr<float, Free> data(
-        stbi_loadf_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels, 3));
-    if (!data) refuse_undecodable(where, "the image cannot be decoded");
-    Image<vec3> image(size);
-    for (size_t i = 0; i < image.pixels.size(); ++i) {
-        image.pixels[i] = {data.get()[3 * i], data.get()[3 * i + 1], data.get()[3 * i + 2]};
-    }
-    return image;
 }
 
 // In the display window, black where the file has no pixels.
@@ -83,10 +71,10 @@ Image<vec3> decode_openexr(std::string_view bytes, std::string_view where, std::
 bool holds_floats(ImageFormat format) { return format == ImageFormat::radiance || format == ImageFormat::openexr; }
 
 Image<vec3> decode_floats(std::string_view bytes, std::string_view where, std::string& note) {
-    Image<vec3> image = image_format(bytes) == ImageFormat::radiance ? decode_radiance(bytes, where)
+    Image<vec3> image = image_format(bytes) == ImageFormat::radiance ? decode_radiance(bytes, where, note)
                                                                      : decode_openexr(bytes, where, note);
     for (const vec3& pixel : image.pixels)
-        if (!is_finite(pixel)) refuse(where, "the image holds a value that is not a number");
+        if (!is_finite(pixel)) refuse(where, "the image holds a value that is not finite");
     return image;
 }
 }
@@ -94,7 +82,7 @@ Image<vec3> decode_floats(std::string_view bytes, std::string_view where, std::s
 ImageFormat image_format(std::string_view bytes) {
     if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return ImageFormat::png;
     if (bytes.starts_with("\xff\xd8\xff")) return ImageFormat::jpeg;
-    if (bytes.starts_with("#?RADIANCE") || bytes.starts_with("#?RGBE")) return ImageFormat::radiance;
+    if (is_radiance(bytes)) return ImageFormat::radiance;
     if (bytes.starts_with("\x76\x2f\x31\x01")) return ImageFormat::openexr;
     return ImageFormat::other;
 }
@@ -106,8 +94,10 @@ ivec2 image_size(std::string_view bytes, std::string_view where) {
     int channels;
     if (image_format(bytes) == ImageFormat::png && bytes.size() >= 24) {
         size = {big_endian(bytes.substr(16)), big_endian(bytes.substr(20))};
+    } else if (image_format(bytes) == ImageFormat::radiance) {
+        size = radiance_size(bytes, where);
     } else if (!stbi_info_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels)) {
-        refuse_undecodable(where, "not a usable image header");
+        refuse_damaged(where);
     }
     if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > largest_image_side)
         refuse(where, "the image has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
@@ -122,7 +112,7 @@ Image<vec4> decode_texture(std::string_view bytes, std::string_view where) {
     int channels;
     const std::unique_ptr<stbi_uc, Free> data(
         stbi_load_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels, 4));
-    if (!data) refuse_undecodable(where, "the image cannot be decoded");
+    if (!data) refuse_damaged(where);
 
     const std::array<float, 256>& table = linear_table();
     Image<vec4> image(size);
@@ -145,6 +135,8 @@ Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::
         if (negative > 0)
             note += (note.empty() ? "" : "; ") + std::to_string(negative) +
                     " pixels with negative light, which is set to 0";
+        if (std::ranges::all_of(image.pixels, [](vec3 pixel) { return pixel == vec3(0); }))
+            note += std::string(note.empty() ? "" : "; ") + "it is black all over";
         return image;
     }
     const Image<vec4> texels = decode_texture(bytes, where);
@@ -183,7 +175,7 @@ ReducedPicture decode_reduced(std::string_view bytes, bool linear, int largest, 
     int channels;
     const std::unique_ptr<stbi_uc, Free> data(stbi_load_from_memory(start(bytes), static_cast<int>(bytes.size()),
                                                                     &picture.size.x, &picture.size.y, &channels, 4));
-    if (!data) refuse_undecodable(where, "the image cannot be decoded");
+    if (!data) refuse_damaged(where);
     std::array<float, 256> table = linear_table();
     for (int i = 0; i < 256 && linear; ++i) table[static_cast<size_t>(i)] = static_cast<float>(i) / 255;
     add_blocks(picture, [&](size_t pixel) {

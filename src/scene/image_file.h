@@ -20,8 +20,8 @@ ivec2 image_size(std::string_view bytes, std::string_view where);
 Image<vec4> decode_texture(std::string_view bytes, std::string_view where);
 
 // A picture behind the scene: sRGB PNG or JPEG, Radiance .hdr or OpenEXR, whose display window it fills, black where
-// there are no pixels. Negative light is set to 0, of which `note` tells, as of colours that are of other primaries.
-// Throws Error (refused) naming `where`.
+// there are no pixels. Negative light is set to 0, of which `note` tells, as of colours that are of other primaries,
+// and of a picture without light. Throws Error (refused) naming `where`.
 Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::string& note);
 
 // A picture whose sides were divided by a whole number, each texel the mean of a block; blocks at the right and lower

@@ -41,7 +41,7 @@ mat4 checked_matrix(const Scene& scene, const MediumSource& source, double secon
     const mat4 matrix = medium_matrix(source, seconds);
     const float determinant = glm::determinant(mat3(matrix));
     if (!std::isfinite(determinant) || determinant == 0)
-        refuse(scene.file.string(), "medium " + source.name + ": its scale or rotation leaves it no volume");
+        refuse(scene.file.string(), named("medium", source.name) + ": its scale or rotation leaves it no volume");
     return matrix;
 }
 
@@ -107,7 +107,7 @@ FogSource read(const MediumSource& source, int frame, const Reading& reading, st
     const StoredFog fog = found_or_made<StoredFog>(files, "bricks", content, [&] {
         VdbReadReport report;
         const SparseVolume volume = read_vdb(*file, source.density_grid, source.density_map, infinity, &report);
-        return stored_fog(volume, report.summary());
+        return within(file->string(), [&] { return stored_fog(volume, report.summary()); });
     });
     if (!fog.note.empty()) reading.notes.push_back(file->filename().string() + ": " + fog.note);
     return source_of(fog, key, content);
@@ -134,7 +134,7 @@ FogSource read_between(const MediumSource& source, const SequenceTime& time, con
         content = "file " + content_hash(content_of(here) + "\n" + content_of(next) + "\n" + time.content());
     const StoredFog fog = found_or_made<StoredFog>(reading.files, "bricks", content, [&] {
         return stored_fog(volume_at(time, {here.bricks, here.index_to_world}, {next.bricks, next.index_to_world},
-                                    "medium " + source.name),
+                                    named("medium", source.name)),
                           {});
     });
     return source_of(fog, key, content);
@@ -248,7 +248,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
         if (!dims) medium.optics.extinction = vec3(min_extinction);
         if (!dims && !is_finite(medium.world_bounds.size()))
             refuse(scene.file.string(),
-                   "medium " + source.name + ": emits without end; give it bounds or an extinction");
+                   named("medium", source.name) + ": emits without end; give it bounds or an extinction");
         if (fog.grids) color_medium(source, moment.seconds, *fog.grids, medium);
         snapshot.media.push_back(std::move(medium));
     }

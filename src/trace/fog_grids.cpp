@@ -42,12 +42,15 @@ StoredProperty read_property(const std::filesystem::path& file, const GridSource
     StoredProperty property;
     VdbReadReport report;
     if (quantity == Quantity::number) {
-        add_pool(read_vdb(file, source.grids[0], source.map, largest_half, &report), property);
+        const SparseVolume numbers = read_vdb(file, source.grids[0], source.map, largest_half, &report);
+        within(file.string(), [&] { add_pool(numbers, property); });
     } else {
         const float most = quantity == Quantity::share ? 1 : largest_half;
         const ColorVolume color = read_color_vdb(file, source.grids, source.map, most, &report);
-        for (const SparseVolume& channel : color.channels) add_pool(channel, property);
-        add_pool(color.there, property);
+        within(file.string(), [&] {
+            for (const SparseVolume& channel : color.channels) add_pool(channel, property);
+            add_pool(color.there, property);
+        });
     }
     property.note = report.summary();
     return property;
@@ -206,7 +209,7 @@ EmissionPart colored_part(const MediumSource& source, const MediumGrids& grids) 
     if (!grids.emission) return {};
     for (const PlacedBricks& channel : grids.emission.channels)
         if (channel.index_to_world != grids.emission.channels[0].index_to_world)
-            refuse("medium " + source.name, "the three grids of its emission have different transforms");
+            refuse(named("medium", source.name), "the three grids of its emission have different transforms");
     EmissionField field;
     field.source = bricks_of(grids.emission);
     return part_of(std::move(field), grids.emission.channels[0].index_to_world, source.name);

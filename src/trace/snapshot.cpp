@@ -44,14 +44,14 @@ Light light_at(const Scene& scene, const LightSource& source, double seconds, ve
     light.name = source.name;
     light.kind = source.kind;
     if (source.node >= 0) {
-        const Frame frame = node_frame(scene, source.node, seconds, "light " + source.name);
+        const Frame frame = node_frame(scene, source.node, seconds, named("light", source.name));
         light.position = frame.position, light.direction = frame.forward, up = frame.up;
     } else {
         light.position = source.position.at(seconds);
         const vec3 direction = source.direction.at(seconds);
         const float length = glm::length(direction);
         if (is_aimed(source) && !(length > 0))
-            refuse(scene.file.string(), "light " + source.name + ": its direction has no length");
+            refuse(scene.file.string(), named("light", source.name) + ": its direction has no length");
         if (length > 0) light.direction = direction / length;
     }
     light.intensity = intensity_of(source, seconds);

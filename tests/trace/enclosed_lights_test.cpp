@@ -64,6 +64,15 @@ TEST(EnclosedLights, ALampInABulbIsToldWithItsNames) {
     EXPECT_EQ(found(moved), 1u) << "not in its middle";
 }
 
+TEST(EnclosedLights, ASpotOnSomethingNearIsFree) {
+    Scene scene = lamp_in(box_of(vec3(-0.5f, -0.5f, -0.5f), vec3(0.5f, -0.3f, 0.5f)));
+    scene.lights[0].kind = LightKind::spot, scene.lights[0].outer_cone = 0.3f;
+    EXPECT_EQ(found(scene), 0u);
+    scene = lamp_in(ball(0.03f));
+    scene.lights[0].kind = LightKind::spot, scene.lights[0].outer_cone = 0.3f;
+    EXPECT_EQ(found(scene), 1u) << "its bulb is all around";
+}
+
 TEST(EnclosedLights, WhatIsMendedIsNotTold) {
     Scene scene = lamp_in(ball(0.03f));
     scene.instances[1].casts_shadows = false;

@@ -10,6 +10,7 @@
 #include "scene/gltf/gltf.h"
 #include "scene/photometry/ies_file.h"
 #include "trace/lights/enclosed_lights.h"
+#include "volume/bricks/bricks.h"
 #include "volume/vdb/vdb.h"
 
 #include <algorithm>
@@ -31,7 +32,7 @@ std::string problem_line(const Problem& problem) {
 
 void check_vdb(const std::filesystem::path& file, const std::string& grid, Problems& problems) {
     VdbReadReport report;
-    read_vdb(file, grid, &report);
+    check_bricks(read_vdb(file, grid, &report));
     const std::string summary = report.summary();
     if (!summary.empty()) problems.push_back({file.string(), summary});
 }
@@ -82,13 +83,18 @@ void check_media(const std::string& file, const Scene& scene, Problems& problems
         if (medium.kind != MediumKind::vdb) continue;
         if (some(medium.extinction) || (emits_light(medium) && !medium.blackbody && !medium.emission_grid))
             check_frames(file, scene, medium.sequence, problems, [&](const auto& volume, VdbReadReport& report) {
-                read_vdb(volume, medium.density_grid, medium.density_map, infinity, &report);
+                const SparseVolume fog = read_vdb(volume, medium.density_grid, medium.density_map, infinity, &report);
+                within(volume.string(), [&] { check_bricks(fog); });
             });
         for (const auto* grid : {&medium.albedo_grid, &medium.emission_grid, &medium.temperature, &medium.flame}) {
             if (!*grid) continue;
             check_frames(file, scene, (*grid)->sequence, problems, [&](const auto& volume, VdbReadReport& report) {
                 const bool share = grid == &medium.albedo_grid;
-                read_color_vdb(volume, (*grid)->grids, (*grid)->map, share ? 1 : infinity, &report);
+                const ColorVolume color =
+                    read_color_vdb(volume, (*grid)->grids, (*grid)->map, share ? 1 : infinity, &report);
+                within(volume.string(), [&] {
+                    for (const SparseVolume& channel : color.channels) check_bricks(channel);
+                });
             });
         }
         if (const auto& velocity = medium.velocity)

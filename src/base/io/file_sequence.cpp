@@ -34,6 +34,14 @@ bool parse_name(const std::string& name, const std::string& pattern, const NameP
     return error == std::errc() && stop == end && frame_name(pattern, frame) == name;
 }
 
+bool is_numbered(const std::string& name) {
+    try {
+        return has_frame_token(name);
+    } catch (const Error& error) {
+        fail(ExitCode::refused, {}, error.what()); // the name is a scene's, not the command line's
+    }
+}
+
 // Remainder that is never negative.
 int64_t modulo(int64_t value, int64_t period) { return (value % period + period) % period; }
 
@@ -63,7 +71,9 @@ FileSequence find_sequence(const std::string& pattern, const fs::path& base_dire
     const std::string name = path.filename().string();
     FileSequence sequence;
     sequence.pattern = path.string();
-    if (!has_frame_token(name)) { // a directory may be called anything
+    std::error_code missing;
+    // A directory may be called anything, and so may a file that is there.
+    if (fs::is_regular_file(path, missing) || !is_numbered(name)) {
         check_readable(path);
         return sequence;
     }

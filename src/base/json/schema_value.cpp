@@ -75,7 +75,8 @@ std::string string_problem(const std::string& text, const Json& schema) {
                                              schema.number_or("maxLength", HUGE_VAL), "character");
     const Json* pattern = schema.find("pattern");
     if (!problem.empty() || !pattern || matches(text, pattern->string)) return problem;
-    return printable(quote_json(text), 60) + " does not match " + pattern->string;
+    const std::string form = schema.string_or("form", "");
+    return printable(quote_json(text), 60) + (form.empty() ? " does not match " + pattern->string : " is not " + form);
 }
 
 std::string array_problem(const std::vector<Json>& items, const Json& schema) {

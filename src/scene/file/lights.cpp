@@ -98,6 +98,8 @@ void read_fields(const Field& field, Scene& scene, LightSource& light) {
     if (has_cone(light) && !cones_fit(light))
         refuse(field.member("outer_cone") ? field.member("outer_cone") : field,
                "outer_cone must not be less than inner_cone, at any moment");
+    if (has_cone(light) && std::ranges::max(light.outer_cone.values) <= 0)
+        refuse(field.member("outer_cone"), "is 0 at any moment: the light has no beam");
 }
 
 std::vector<std::string> light_names(const Scene& scene) {

@@ -88,13 +88,7 @@ std::filesystem::path named_file(const Field& field, const Scene& scene) {
     return path;
 }
 
-void with_place(const Field& field, const std::function<void()>& read) {
-    try {
-        read();
-    } catch (const Error& error) {
-        fail(error.code, field.place(), error.what());
-    }
-}
+void with_place(const Field& field, const std::function<void()>& read) { within(field.place(), read); }
 
 void warn(Scene& scene, std::string_view text) {
     const std::string line = printable(text, 400);
@@ -126,6 +120,8 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
     if (is_volume_name(file)) return load_volume(file, options);
     for (const char* other : {".blend", ".fbx", ".obj", ".abc", ".usd", ".usda", ".usdc", ".usdz"})
         if (extension == other) refuse(file.string(), "is not read here; export the scene as glTF, .glb or .gltf");
+    for (const char* other : {".ies", ".hdr", ".pic", ".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"})
+        if (extension == other) refuse(file.string(), "is no scene; name it in the lights or the background of one");
     if (extension == ".gltf" || extension == ".glb") {
         load_gltf(file, options, scene);
         scene.origin = far_origin({}, scene);

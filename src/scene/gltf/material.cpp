@@ -70,7 +70,10 @@ Image<vec4> decoded_image(GltfDocument& document, int index) {
         bytes = image_bytes(document, index, pointer);
     } catch (const Error& error) {
         if (error.code == ExitCode::refused) throw;
-        document.warn(pointer, std::string("the material's colour is used instead: ") + error.what());
+        const std::string text = error.what(), place = pointer + "/uri: ";
+        const size_t at = text.find(place); // said once
+        document.warn(pointer, "the material's colour is used instead: " +
+                                   (at == text.npos ? text : text.substr(at + place.size())));
         return {};
     }
     const ImageFormat format = image_format(bytes);

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/json/json_pointer.h"
+#include "base/text.h"
 #include "scene/gltf/shape_rules.h"
 
 #include <cmath>
@@ -112,7 +113,7 @@ private:
             value.number == std::floor(value.number))
             return;
         wrong(value, pointer,
-              "an index into \"" + std::string(collection) + "\", which has " + std::to_string(count) + " entries");
+              "an index into \"" + std::string(collection) + "\", which has " + count_text(count, "element"));
     }
 
     void index_map(const Json& value, std::string_view collection, const std::string& pointer) const {

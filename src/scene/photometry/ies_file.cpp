@@ -48,11 +48,11 @@ public:
     double number(const char* what) {
         skip_blanks();
         if (left_.empty()) fail_at(std::string("the file ends before ") + what);
-        const std::string_view word = left_.substr(0, std::min(left_.find_first_of(" \t\r\n,\f\v"), left_.size()));
-        const std::optional<double> value = parsed<double>(word.starts_with('+') ? word.substr(1) : word);
+        const std::string_view text = word();
+        const std::optional<double> value = parsed<double>(text.starts_with('+') ? text.substr(1) : text);
         if (!value || !std::isfinite(*value))
-            fail_at(std::string("expected ") + what + ", found \"" + printable(word, 40) + "\"");
-        left_.remove_prefix(word.size());
+            fail_at(std::string("expected ") + what + ", found \"" + printable(text, 40) + "\"");
+        left_.remove_prefix(text.size());
         return *value;
     }
 
@@ -79,12 +79,21 @@ public:
         return left_.empty();
     }
 
+    bool at_number() {
+        skip_blanks();
+        return parsed<double>(word()).has_value();
+    }
+
     [[noreturn]] void fail_at(const std::string& what) const {
         refuse(where_, "line " + std::to_string(line_ + 1) + ": " + what);
     }
     [[noreturn]] void fail(const std::string& what) const { refuse(where_, what); }
 
 private:
+    std::string_view word() const {
+        return left_.substr(0, std::min(left_.find_first_of(" \t\r\n,\f\v"), left_.size()));
+    }
+
     void skip_blanks() {
         while (!left_.empty() && (static_cast<unsigned char>(left_.front()) <= ' ' || left_.front() == ',')) {
             if (left_.front() == '\n') ++line_;
@@ -191,6 +200,8 @@ void read_candela(Reader& reader, double factor, IesFile& file) {
         if (!(value <= max_candela)) reader.fail_at("a candela value is over 1e15");
     }
     if (below) file.notes.push_back(count_text(below, "candela value") + " below 0 taken for 0");
+    if (!reader.at_end() && reader.at_number())
+        reader.fail_at("numbers follow the last candela value: a count of angles is wrong, or decimals have commas");
     if (!reader.at_end()) file.notes.push_back("what follows the candela values is left out");
 }
 

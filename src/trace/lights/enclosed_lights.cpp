@@ -17,11 +17,11 @@ constexpr int directions = 256;
 constexpr float near_share = 0.1f;    // of the scene's extent: surfaces farther away are those of a room
 constexpr double all_blocked = 0.95;  // of the light; the neck of an open bulb is smaller, a shade's openings larger
 constexpr double of_one_object = 0.8; // of the light
+constexpr double around_spot = 0.75;  // of all directions: a spot's can; a surface that it shines on takes half
 
-// Even over the sphere, or over a spot's cone (a Fibonacci lattice).
-vec3 direction_of(const Light& light, int i) {
+// Even over the directions whose cosine with the light's is above `lowest` (a Fibonacci lattice).
+vec3 direction_of(const Light& light, float lowest, int i) {
     const float golden = 2.3999632f; // π (3 - √5)
-    const float lowest = has_cone(light) ? std::cos(light.outer_cone) : -1.0f;
     const float cosine = 1 - (1 - lowest) * (static_cast<float>(i) + 0.5f) / directions;
     const float sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine)), turned = golden * static_cast<float>(i);
     vec3 x, y;
@@ -29,7 +29,7 @@ vec3 direction_of(const Light& light, int i) {
     return sine * std::cos(turned) * x + sine * std::sin(turned) * y + cosine * light.direction;
 }
 
-// What is around a light, up to a distance.
+// What is around a light, or before it, up to a distance; not all of it where less than `least` is blocked.
 struct Surroundings {
     double blocked = 0;            // share of its light
     std::map<int, double> by_node; // of it, by what it meets first
@@ -37,18 +37,19 @@ struct Surroundings {
     float farthest = 0;            // of the surfaces met
 };
 
-Surroundings look_around(const Light& light, const Occluders& occluders, const Scene& scene, float distance) {
+Surroundings look_around(const Light& light, float lowest, double least, const Occluders& occluders, const Scene& scene,
+                         float distance) {
     Surroundings around;
     const float start = std::max(light.radius, shadow_offset(light.position));
     double open = 0;
     for (int i = 0; i < directions; ++i) {
         // All over the lattice from the start: most lights are known to be free after a few rays.
-        const Ray ray{light.position, direction_of(light, i * 97 % directions), distance};
+        const Ray ray{light.position, direction_of(light, lowest, i * 97 % directions), distance};
         Hits hits;
         occluders.closest({&ray, 1}, start, hits);
         const double share = (1 - occluders.transmission(ray, start)) / directions;
         open += 1.0 / directions - share;
-        if (open > 1 - all_blocked) break;
+        if (open > 1 - least) break;
         if (hits.instance[0] < 0) continue;
         const int node = scene.instances[static_cast<size_t>(hits.instance[0])].node;
         around.blocked += share, around.by_node[node] += share;
@@ -82,13 +83,17 @@ std::string name_of(const Scene& scene, int instance) {
 std::optional<std::string> line_of(const Light& light, const Snapshot& snapshot) {
     const auto& occluders = shadow_casters(light, snapshot);
     if (!occluders || is_distant(light)) return {};
-    const Surroundings around = look_around(light, *occluders, *snapshot.scene, near_share * snapshot.extent);
+    const auto look = [&](float lowest, double least) {
+        return look_around(light, lowest, least, *occluders, *snapshot.scene, near_share * snapshot.extent);
+    };
+    const Surroundings around = look(has_cone(light) ? std::cos(light.outer_cone) : -1, all_blocked);
     if (around.blocked < all_blocked) return {};
+    if (has_cone(light) && look(-1, around_spot).blocked < around_spot) return {};
     const auto by_share = [](const auto& a, const auto& b) { return a.second < b.second; };
     const auto most = std::ranges::max_element(around.by_node, by_share);
     if (most->second < of_one_object || seen_by_camera(light, snapshot, *occluders, around.farthest)) return {};
     const std::string object = printable(name_of(*snapshot.scene, around.instance.at(most->first)), 80);
-    return "light " + printable(light.name, 80) + " is enclosed by the object \"" + object + "\": " +
+    return named("light", printable(light.name, 80)) + " is enclosed by the object \"" + object + "\": " +
            formatted("%.0f %% of its light ends within %.2g m", 100 * around.blocked, double(around.farthest)) +
            "; to let it out, write {\"name\": \"" + object + "\", \"casts_shadows\": false} in \"objects\"";
 }

@@ -51,6 +51,9 @@ template<class Visit> void fields(BrickPool& pool, Visit& visit) {
     visit(pool.mass), visit(pool.mean), visit(pool.mean_in_bricks), visit(pool.voxel_size);
 }
 
+// Throws what make_bricks() would for want of room for the index alone.
+void check_bricks(const SparseVolume& volume);
+
 // Throws Error: out_of_memory when the index alone would pass 256 MB or the bricks the memory of this machine, refused
 // when the transform has no inverse.
 std::shared_ptr<const BrickPool> make_bricks(const SparseVolume& volume);

@@ -41,7 +41,8 @@ void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
                  "fog spans " + std::to_string(int64_t{box.high.x} - box.low.x + 1) + "x" +
                      std::to_string(int64_t{box.high.y} - box.low.y + 1) + "x" +
                      std::to_string(int64_t{box.high.z} - box.low.z + 1) +
-                     " voxels; its brick index would pass 256 MB. Use larger voxels or a smaller active box");
+                     " voxels, more than can be held: a few stray ones far away are enough; remove them, or use "
+                     "larger voxels");
     }
     pool.local_bounds = {vec3(box.low - pool.low - 1), vec3(box.high - pool.low + 1)};
 }
@@ -168,6 +169,12 @@ void finish_index(const std::vector<HalfRange>& packed, BrickArrays arrays, Bric
     pool.constants = std::move(arrays.constants);
     pool.minimum = std::move(arrays.minimum), pool.maximum = std::move(arrays.maximum);
 }
+}
+
+void check_bricks(const SparseVolume& volume) {
+    BrickPool pool;
+    const Sources sources = make_sources(volume);
+    if (!sources.box.empty()) size_pool(volume.name, sources.box, pool);
 }
 
 std::shared_ptr<const BrickPool> make_bricks(const SparseVolume& volume) {

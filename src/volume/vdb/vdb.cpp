@@ -259,7 +259,8 @@ std::string VdbReadReport::summary() const {
     if (above)
         parts.push_back(std::to_string(above) + formatted(" voxels above %g set to it", static_cast<double>(most)));
     if (background != 0)
-        parts.push_back(formatted("background %g dropped outside the active voxels", static_cast<double>(background)));
+        parts.push_back(
+            formatted("background %g dropped outside the box of the active voxels", static_cast<double>(background)));
     return parts.empty() ? "" : "grid \"" + printable(grid, 80) + "\": " + joined(parts, ", ");
 }
 }

@@ -50,6 +50,15 @@ TEST_F(Sequence, EverySpellingOfTheNumber) {
     EXPECT_THAT(made({"v00012.vdb", "v00013.vdb", "v1.vdb"}, "v0####.vdb").files, ElementsAre(12, 13));
 }
 
+TEST_F(Sequence, AFileThatIsThereMayBeCalledAnything) {
+    for (const char* name : {"take#2.vdb", "50%.vdb", "a%b.vdb", "a$F.vdb", "####.vdb"}) {
+        const FileSequence sequence = made({name}, name);
+        EXPECT_TRUE(sequence.files.empty()) << name;
+        EXPECT_EQ(sequence_file(sequence, 3, MissingFrame::error), scratch.path() / name);
+    }
+    EXPECT_EQ(error_of([&] { find_sequence("c%b.vdb", scratch.path()); }).code, ExitCode::refused);
+}
+
 TEST_F(Sequence, InADirectoryBelow) {
     std::filesystem::create_directory(scratch.path() / "50%");
     scratch.put("50%/a.0007.vdb", "x");

@@ -199,8 +199,8 @@ TEST(JsonSchema, ShippedSchemasUseKeywordsThatAreUnderstood) {
     const std::filesystem::path root = TYNDALL_SOURCE_DIR;
     const std::set<std::string> understood{
         "$ref", "additionalItems", "additionalProperties", "allOf", "anyOf", "const", "definitions", "else", "enum",
-        "exclusiveMaximum", "exclusiveMinimum", "if", "items", "maxItems", "maxLength", "maxProperties", "maximum",
-        "minItems", "minLength", "minProperties", "minimum", "multipleOf", "not", "oneOf", "pattern",
+        "exclusiveMaximum", "exclusiveMinimum", "form", "if", "items", "maxItems", "maxLength", "maxProperties",
+        "maximum", "minItems", "minLength", "minProperties", "minimum", "multipleOf", "not", "oneOf", "pattern",
         "patternProperties", "properties", "required", "synonyms", "then", "type", "uniqueItems",
         // Said to people and editors.
         "$comment", "$id", "$schema", "default", "description", "examples", "title"};

@@ -136,6 +136,8 @@ TEST(IesFile, DamagedFilesAreRefusedInOneLine) {
         {replaced(plain, "0 45 90", "0 95 90"), "does not go up"},
         {replaced(plain, "0 45 90", "0 45 450"), "450"},
         {replaced(plain, "100 80 20", "0 0 0"), "no light"},
+        {replaced(plain, "100 80 20", "100,5 80,2 20,1"), "decimals have commas"},
+        {plain + "7\n", "a count of angles is wrong"},
         {replaced(plain, "TILT=NONE", "TILT=INCLUDE\n1\n1000000000"), "room for"},
         {text_of("1 -1 1 2 2 1 2 0 0 0\n1 1 0\n0 90\n10 50\n1 1 1 1\n"), "10 to 50"},
     };
