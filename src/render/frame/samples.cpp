@@ -94,7 +94,7 @@ void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, con
 void add_background(const FrameTracer& tracer, const Path& path, PixelSample& result) {
     result.background +=
         path.through * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
-    result.alpha = 1 - mean_component(path.through) - result.held;
+    result.alpha = std::max(1 - mean_component(path.through) - result.held, 0.0f); // rounding may take it below
 }
 }
 
