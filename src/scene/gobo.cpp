@@ -1,7 +1,7 @@
 #include "scene/gobo.h"
 
 #include "base/io/file.h"
-#include "scene/image_file.h"
+#include "scene/images/image_file.h"
 
 #include <algorithm>
 #include <cmath>

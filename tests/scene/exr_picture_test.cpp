@@ -3,7 +3,7 @@
 #include "base/exr/exr_picture.h"
 #include "base/io/file.h"
 #include "base/random.h"
-#include "scene/image_file.h"
+#include "scene/images/image_file.h"
 #include "support/corpus.h"
 #include "support/expect.h"
 #include "support/scratch.h"

@@ -1,7 +1,7 @@
 // Gobos: which way they stand, what is outside, and how large ones are reduced.
 #include "scene/gobo.h"
-#include "scene/image_file.h"
 #include "scene/images.h"
+#include "scene/images/image_file.h"
 #include "scene/light_filter.h"
 #include "support/expect.h"
 

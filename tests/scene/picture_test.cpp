@@ -1,8 +1,8 @@
 // Pictures with more light than a screen has: Radiance and OpenEXR.
 #include "base/error.h"
 #include "base/io/file.h"
-#include "scene/image_file.h"
 #include "scene/images.h"
+#include "scene/images/image_file.h"
 #include "support/expect.h"
 #include "support/scratch.h"
 

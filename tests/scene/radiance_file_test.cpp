@@ -1,7 +1,7 @@
 // Radiance pictures as other programs write them.
 #include "base/error.h"
 #include "scene/images.h"
-#include "scene/radiance_file.h"
+#include "scene/images/radiance_file.h"
 #include "support/expect.h"
 
 #include <gmock/gmock.h>

@@ -1,7 +1,7 @@
 #include "base/error.h"
 #include "base/io/file.h"
-#include "scene/image_file.h"
 #include "scene/images.h"
+#include "scene/images/image_file.h"
 #include "scene/mesh.h"
 #include "support/expect.h"
 #include "support/scratch.h"

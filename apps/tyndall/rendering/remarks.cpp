@@ -15,16 +15,6 @@
 
 namespace tyndall {
 namespace {
-// Of the mode.
-Limitations limitations_of_mode(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
-                                const Snapshot& snapshot) {
-    View view;
-    view.camera = camera_at(scene, find_camera(scene, request.camera), snapshot.seconds);
-    view.shutter = view_of(scene, request, plan.settings, snapshot.frame).shutter;
-    view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
-    return plan.mode->limitations(view, snapshot, plan.choice ? plan.choice->candidate.settings : plan.settings);
-}
-
 // How far multiple scattering is off, where an image is not rendered to a goal, which counts it.
 void add_orders(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const Snapshot& snapshot,
                 Limitations& limitations) {
@@ -37,7 +27,12 @@ void add_orders(const Scene& scene, const RenderRequest& request, const RenderPl
 
 Limitations limitations_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
                            const Snapshot& snapshot, bool measured) {
-    Limitations limitations = limitations_of_mode(scene, request, plan, snapshot);
+    View view;
+    view.camera = camera_at(scene, find_camera(scene, request.camera), snapshot.seconds);
+    view.shutter = view_of(scene, request, plan.settings, snapshot.frame).shutter;
+    view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    Limitations limitations =
+        plan.mode->limitations(view, snapshot, plan.choice ? plan.choice->candidate.settings : plan.settings);
     if (measured) add_orders(scene, request, plan, snapshot, limitations);
     return limitations;
 }

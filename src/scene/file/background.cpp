@@ -1,7 +1,7 @@
 // What is behind everything.
 #include "base/io/file.h"
 #include "scene/file/scene_file.h"
-#include "scene/image_file.h"
+#include "scene/images/image_file.h"
 
 namespace tyndall {
 namespace {

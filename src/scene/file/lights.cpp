@@ -99,7 +99,7 @@ void read_fields(const Field& field, Scene& scene, LightSource& light) {
         refuse(field.member("outer_cone") ? field.member("outer_cone") : field,
                "outer_cone must not be less than inner_cone, at any moment");
     if (has_cone(light) && std::ranges::max(light.outer_cone.values) <= 0)
-        refuse(field.member("outer_cone"), "is 0 at any moment: the light has no beam");
+        refuse(field.member("outer_cone"), "is 0 at all times: the light has no beam");
 }
 
 std::vector<std::string> light_names(const Scene& scene) {

@@ -121,7 +121,8 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
     for (const char* other : {".blend", ".fbx", ".obj", ".abc", ".usd", ".usda", ".usdc", ".usdz"})
         if (extension == other) refuse(file.string(), "is not read here; export the scene as glTF, .glb or .gltf");
     for (const char* other : {".ies", ".hdr", ".pic", ".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"})
-        if (extension == other) refuse(file.string(), "is no scene; name it in the lights or the background of one");
+        if (extension == other)
+            refuse(file.string(), "is not a scene; name it in the lights or the background of a scene file");
     if (extension == ".gltf" || extension == ".glb") {
         load_gltf(file, options, scene);
         scene.origin = far_origin({}, scene);

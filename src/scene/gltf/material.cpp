@@ -2,7 +2,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "scene/gltf/document.h"
-#include "scene/image_file.h"
+#include "scene/images/image_file.h"
 
 namespace tyndall {
 namespace {

@@ -49,7 +49,7 @@ public:
         skip_blanks();
         if (left_.empty()) fail_at(std::string("the file ends before ") + what);
         const std::string_view text = word();
-        const std::optional<double> value = parsed<double>(text.starts_with('+') ? text.substr(1) : text);
+        const std::optional<double> value = number_of(text);
         if (!value || !std::isfinite(*value))
             fail_at(std::string("expected ") + what + ", found \"" + printable(text, 40) + "\"");
         left_.remove_prefix(text.size());
@@ -81,7 +81,7 @@ public:
 
     bool at_number() {
         skip_blanks();
-        return parsed<double>(word()).has_value();
+        return number_of(word()).has_value();
     }
 
     [[noreturn]] void fail_at(const std::string& what) const {
@@ -90,6 +90,10 @@ public:
     [[noreturn]] void fail(const std::string& what) const { refuse(where_, what); }
 
 private:
+    static std::optional<double> number_of(std::string_view text) {
+        return parsed<double>(text.starts_with('+') ? text.substr(1) : text);
+    }
+
     std::string_view word() const {
         return left_.substr(0, std::min(left_.find_first_of(" \t\r\n,\f\v"), left_.size()));
     }

@@ -3,9 +3,9 @@
 #include "trace/fluence/fluence.h"
 
 namespace tyndall {
-// The values become a mean of themselves and of filters that reach over 3, 7 and 15 cells, each of which takes out a
-// detail: a share of it stays that is, in power, as large as that of the light in the details around (Wiener 1949). The
-// rest is noise by `difference`: half of what one half of the paths gives more than the other, as many values. What
-// leaves at walls and at the borders of the grid comes back.
+// A local Wiener filter (Wiener 1949). The grid is split into details by filters of 3, 7 and 15 cells; of each detail
+// the share is kept that is light, by the power of light and noise nearby. The noise is `difference`: half of what one
+// half of the paths gives more than the other, as many values. Light that reaches walls or the grid's borders comes
+// back.
 void smooth(std::vector<float> difference, FluenceGrid& grid);
 }

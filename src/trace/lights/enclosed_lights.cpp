@@ -29,7 +29,7 @@ vec3 direction_of(const Light& light, float lowest, int i) {
     return sine * std::cos(turned) * x + sine * std::sin(turned) * y + cosine * light.direction;
 }
 
-// What is around a light, or before it, up to a distance; not all of it where less than `least` is blocked.
+// What is around a light, or before it, up to a distance; ends early where less than `least` is blocked.
 struct Surroundings {
     double blocked = 0;            // share of its light
     std::map<int, double> by_node; // of it, by what it meets first

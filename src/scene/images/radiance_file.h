@@ -8,10 +8,10 @@
 namespace tyndall {
 bool is_radiance(std::string_view bytes); // by its first bytes
 
-// Upright, whichever way its lines run. Throws Error (refused) naming `where`.
+// Of the upright picture. Throws Error (refused) naming `where`.
 ivec2 radiance_size(std::string_view bytes, std::string_view where);
 
-// Pixels as they are seen upright, plain or run-length encoded in either way, over the EXPOSURE and COLORCORR that they
-// were multiplied by, of which `note` tells. Throws Error (refused) naming `where`, also of a file that is cut off.
+// Upright pixels, divided by the EXPOSURE and COLORCORR of the header, which `note` says; plain or in either run-length
+// encoding. Throws Error (refused) naming `where`, also for a file that is cut off.
 Image<vec3> decode_radiance(std::string_view bytes, std::string_view where, std::string& note);
 }

@@ -1,11 +1,11 @@
-#include "scene/radiance_file.h"
+#include "scene/images/radiance_file.h"
 
 #include "base/error.h"
 #include "base/text.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 namespace tyndall {
@@ -55,11 +55,10 @@ std::string_view next_word(std::string_view& text) {
 
 float factor_of(std::string_view& text, std::string_view line, std::string_view where) {
     const std::string_view word = next_word(text);
-    float value = 0;
-    const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (wrong != std::errc() || end != word.data() + word.size() || !(value > 0) || !std::isfinite(value))
+    const std::optional<float> value = parsed<float>(word);
+    if (!value || !(*value > 0) || !std::isfinite(*value))
         refuse(where, "\"" + printable(line, 60) + "\" in the header is not a factor above 0");
-    return value;
+    return *value;
 }
 
 Axis next_axis(std::string_view& text) {
@@ -67,8 +66,8 @@ Axis next_axis(std::string_view& text) {
     Axis axis;
     if (name.size() != 2 || (name[0] != '+' && name[0] != '-') || (name[1] != 'X' && name[1] != 'Y')) return {};
     axis.name = name[1], axis.backwards = (name[0] == '-') == (name[1] == 'X'); // -Y runs down, as rows do
-    const auto [end, wrong] = std::from_chars(size.data(), size.data() + size.size(), axis.size);
-    return wrong == std::errc() && end == size.data() + size.size() ? axis : Axis{};
+    axis.size = parsed<int>(size).value_or(0);
+    return axis;
 }
 
 Header read_header(std::string_view bytes, std::string_view where) {
@@ -171,7 +170,7 @@ Image<vec3> decode_radiance(std::string_view bytes, std::string_view where, std:
         refuse(where, formatted("the image has %dx%d pixels; at most 134 million can be used", size.x, size.y));
     Bytes rest{bytes.substr(header.pixels_at), where};
     if (rest.rest.size() < 4 * static_cast<size_t>(header.across_lines.size)) refuse_cut_off(where);
-    if (header.multiplied != vec3(1)) note = "its light is divided by the EXPOSURE and COLORCORR of its header";
+    if (header.multiplied != vec3(1)) note = "pixels are divided by the EXPOSURE and COLORCORR of the header";
 
     Image<vec3> image(size);
     std::vector<Rgbe> line(static_cast<size_t>(header.along_line.size));

@@ -1,9 +1,9 @@
-#include "scene/image_file.h"
+#include "scene/images/image_file.h"
 
 #include "base/error.h"
 #include "base/exr/exr_picture.h"
 #include "base/io/file.h"
-#include "scene/radiance_file.h"
+#include "scene/images/radiance_file.h"
 
 #include <algorithm>
 #include <array>
@@ -136,7 +136,7 @@ Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::
             note += (note.empty() ? "" : "; ") + std::to_string(negative) +
                     " pixels with negative light, which is set to 0";
         if (std::ranges::all_of(image.pixels, [](vec3 pixel) { return pixel == vec3(0); }))
-            note += std::string(note.empty() ? "" : "; ") + "it is black all over";
+            note += std::string(note.empty() ? "" : "; ") + "the picture is black";
         return image;
     }
     const Image<vec4> texels = decode_texture(bytes, where);
