@@ -43,6 +43,7 @@ std::optional<LimitationGroup> worst_of(const Limitations& limitations) {
 std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const Limitations& limitations) {
     if (best.gets_there() && goal.error > 0) {
         const double ratio = best.seconds / winner.seconds;
+        if (ratio < 1 && best.risk > 0) return "may reach it in " + seconds_text(best.seconds) + ", or miss it";
         return "reaches it in " + seconds_text(best.seconds) +
                (ratio < 1.1 ? ", about as long" : formatted(", %.*f times as long", ratio < 10 ? 1 : 0, ratio));
     }

@@ -9,6 +9,10 @@
 
 namespace tyndall {
 namespace {
+// Of scenes drawn by chance: what measuring the other modes takes over what the main one took, in the median; and how
+// often one whose integrator leaves little room for noise misses a target that it seemed to get to.
+constexpr double others_share = 0.25, chance_to_miss = 0.5;
+
 // A mode with candidates yet to measure.
 struct Runner {
     const Mode* mode;
@@ -92,8 +96,9 @@ void add(Contender contender, const Goal& goal, Contest& contest) {
     if (wins) contest.winner = contest.contenders.size() - 1;
 }
 
-// A candidate of another mode, beside the main mode's choice.
-Contender measured_beside(const Choice& main, const Mode& mode, const Candidate& candidate, const Goal& goal) {
+// A candidate of another mode, beside the main mode's choice, which takes so many seconds where this one misses.
+Contender measured_beside(const Choice& main, double main_seconds, const Mode& mode, const Candidate& candidate,
+                          const Goal& goal) {
     Contender contender{&mode,
                         {candidate, measure(*main.pilot, mode, candidate.settings, goal.clock), has_integrator(mode)}};
     Choice& choice = contender.choice;
@@ -103,6 +108,7 @@ Contender measured_beside(const Choice& main, const Mode& mode, const Candidate&
     if (main.scout_variance > 0)
         choice.noise_ratio = std::max(choice.measured.sample.value / main.scout_variance, 1e-6);
     predict(contender, goal);
+    if (goal.error > 0 && !leaves_room(choice, goal.error)) contender.risk = chance_to_miss * main_seconds;
     return contender;
 }
 }
@@ -116,7 +122,7 @@ Contender measured_alone(const Mode& mode, const View& view, const Snapshot& sna
 
 bool beats(const Contender& a, const Contender& b, const Goal& goal) {
     if (a.gets_there() != b.gets_there()) return a.gets_there();
-    return a.gets_there() && goal.error > 0 ? a.seconds < b.seconds : a.error < b.error;
+    return a.gets_there() && goal.error > 0 ? a.seconds + a.risk < b.seconds + b.risk : a.error < b.error;
 }
 
 Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
@@ -126,13 +132,16 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     Contest contest;
     Contender main = measured_alone(main_mode(), view, snapshot, settings, goal, options);
     const Choice first = main.choice;
-    const double allowed = share * (goal.seconds > 0 ? goal.seconds : main.seconds), begun = goal.clock();
+    const double main_seconds = main.seconds, begun = goal.clock();
+    const double allowed = share * (goal.seconds > 0 ? goal.seconds : main_seconds);
+    const bool is_quick = goal.seconds == 0 && main.gets_there() && allowed < others_share * (begun - start);
     const bool same_light = max_component(snapshot.ambient) == 0; // path tracing shadows it, the truth does not
     const bool noisy = same_light && (share == infinity || !main.gets_there() || modes.size() == 1);
     if (std::ranges::count(modes, main.mode->name, &Mode::name)) add(std::move(main), goal, contest);
 
     std::vector<Runner> runners;
-    if (first.scout) runners = runners_of(modes, settings, goal.quality, noisy);
+    if (first.scout && (!is_quick || contest.contenders.empty()))
+        runners = runners_of(modes, settings, goal.quality, noisy);
     const size_t all = std::max<size_t>(runners.size(), 1);
     while (!runners.empty()) {
         for (Runner& runner : runners) {
@@ -145,7 +154,8 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
                 runner.next = runner.candidates.size();
                 continue;
             }
-            add(measured_beside(first, *runner.mode, runner.candidates[runner.next++], goal), goal, contest);
+            add(measured_beside(first, main_seconds, *runner.mode, runner.candidates[runner.next++], goal), goal,
+                contest);
             const Contender& last = contest.contenders.back();
             runner.seconds = goal.clock() - before, runner.note(last.choice.measured.integrator.bound);
             if (!may_improve(last, runner.idle, contest.best(), goal)) runner.next = runner.candidates.size();

@@ -1,0 +1,81 @@
+// Modes against each other: what measuring them may cost, and what they may cost where they fail.
+#include "render/adaptive/contest.h"
+
+#include "modes/mode.h"
+#include "modes/settings.h"
+#include "scene/light.h"
+#include "support/tiny_scenes.h"
+#include "trace/snapshot.h"
+#include "trace/view.h"
+#include "volume/medium.h"
+
+#include <gtest/gtest.h>
+
+namespace tyndall::test {
+namespace {
+const FrameOptions plain{};
+
+struct LitBox {
+    View view;
+    Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, Box{vec3(-4), vec3(4)})}, {sun_light({0, -1, -0.2f})});
+    Settings settings = settings_for(Quality::preview);
+
+    LitBox() {
+        view.camera = look_at({0, 0, 6}, {0, 0, 0}, {0, 1, 0}, 0.9f);
+        view.size = {64, 36}, view.pixel_samples = 1;
+    }
+};
+
+// A second passes each time it is looked at.
+struct StepClock {
+    std::shared_ptr<double> seconds = std::make_shared<double>(0);
+    double operator()() const { return *seconds += 1; }
+};
+}
+
+TEST(Contest, AModeThatMayMissTheTargetHasToBeThatMuchQuicker) {
+    const Goal goal{0.05};
+    Contender main, other;
+    main.samples = other.samples = 1;
+    main.seconds = 2, other.seconds = 1;
+    EXPECT_TRUE(beats(other, main, goal));
+    other.risk = 0.9;
+    EXPECT_TRUE(beats(other, main, goal));
+    other.risk = 1.1;
+    EXPECT_FALSE(beats(other, main, goal));
+    EXPECT_TRUE(beats(main, other, goal));
+}
+
+TEST(Contest, OnlyModesThatLeaveLittleRoomForNoiseAreARisk) {
+    const LitBox box;
+    Goal goal{0, 0, Quality::preview, steady_seconds};
+    int risky = 0, safe = 0;
+    for (const double error : {0.003, 0.01, 0.03, 0.1}) {
+        goal.error = error;
+        const Contest contest = hold_contest(modes(), box.view, box.snapshot, box.settings, goal, infinity, plain);
+        for (const Contender& contender : contest.contenders) {
+            if (contender.mode == &main_mode()) continue;
+            EXPECT_EQ(contender.risk > 0, !leaves_room(contender.choice, error)) << contender.mode->name;
+            ++(contender.risk > 0 ? risky : safe);
+        }
+    }
+    EXPECT_GT(risky, 0);
+    EXPECT_GT(safe, 0);
+}
+
+// Measuring the others takes a quarter of what measuring the main mode took: where it may not, that is not begun.
+TEST(Contest, NoneIsMeasuredWhereThatWouldTakeMoreThanItMay) {
+    const LitBox box;
+    const Goal goal{0.05, 0, Quality::preview, StepClock{}};
+    const double start = goal.clock();
+    const Contender main = measured_alone(main_mode(), box.view, box.snapshot, box.settings, goal, plain);
+    const double alone = goal.clock() - start;
+    ASSERT_TRUE(main.gets_there());
+    const auto measured = [&](double share_of_alone) {
+        const double share = share_of_alone * alone / main.seconds;
+        return hold_contest(modes(), box.view, box.snapshot, box.settings, goal, share, plain).contenders.size();
+    };
+    EXPECT_EQ(measured(0.2), 1u);
+    EXPECT_GT(measured(0.5), 1u);
+}
+}
