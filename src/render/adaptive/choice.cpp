@@ -31,14 +31,17 @@ Allotment Choice::spread(const Enough& enough, int unit) const {
     return result;
 }
 
-double Choice::samples_to(double error) const {
-    const double left = error * error - measured.integrator.bound;
+double Choice::work_to(double error, double squared_integrator) const {
+    const double left = error * error - squared_integrator;
     if (!(left > 0) || !scout) return infinity;
     const double pixels = static_cast<double>(scout->layers.size.x) * scout->layers.size.y;
-    return spread({left, infinity}, scout_samples).rays / pixels;
+    return spread({left, infinity}, scout_samples).rays / pixels * measured.sample_work;
 }
 
-double Choice::work_to(double error) const { return samples_to(error) * measured.sample_work; }
+double Choice::times_to(double error, double squared_integrator, const Noise& noise) const {
+    const double left = error * error - squared_integrator;
+    return left > 0 ? std::pow(noise.bound * noise.bound / left, 1 / power) : double{infinity};
+}
 
 double Choice::expected(double samples) const {
     if (samples < 2) return measured.integrator.value + measured.sample.value;

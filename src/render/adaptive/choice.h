@@ -19,11 +19,13 @@ struct Choice {
     // How samples are best spread for an error or a number of rays; by the scout, which there must be.
     Allotment spread(const Enough& enough, int unit) const;
 
-    // Samples per pixel that get to an error, on the average; infinite where that is out of reach.
-    double samples_to(double error) const;
+    // To render as many samples as get to an error, were the integrator's squared one as large as that: by default its
+    // bound. Infinite where the error is out of reach.
+    double work_to(double error, double squared_integrator) const;
+    double work_to(double error) const { return work_to(error, measured.integrator.bound); }
 
-    // To render them.
-    double work_to(double error) const;
+    // How many times as many samples as have left so much noise get there.
+    double times_to(double error, double squared_integrator, const Noise& noise) const;
 
     // The squared error to expect of so many samples per pixel, on the average.
     double expected(double samples) const;

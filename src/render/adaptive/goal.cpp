@@ -15,6 +15,7 @@ namespace {
 constexpr double truth_share = 0.1, measuring_share = 0.4, scout_share = 0.2;
 constexpr double truth_work_share = 0.2;  // of the picture's work, where no time is given
 constexpr double max_orders_share = 0.15; // of the seconds there are: to measure multiple scattering
+constexpr double max_doubt_share = 0.25;  // of the main mode's work, where the picture is another one's
 constexpr int truth_marches = 64;         // from so many nodes of a ray the truth marches to each light
 
 // Whether a finer candidate is as wrong as the one before.
@@ -32,16 +33,24 @@ bool is_undecided(const SquaredError& error, double wanted) {
     return error.bound > wanted && 2 * error.value - error.bound <= wanted;
 }
 
-// Work of following the truth through more tiles, or as often again.
-double work_to_grow(const Pilot& pilot, bool by_noise) { return pilot.cost.work / (by_noise ? 1 : pilot.drawings); }
-
-// Shows more of what is undecided, by more samples or by more tiles; false where that takes more work than it may save,
-// or there is nothing more to see.
-bool grow_for(double saving, Pilot& pilot, bool by_noise) {
-    if (!pilot.can_grow(by_noise)) by_noise = !by_noise;
-    if (!pilot.can_grow(by_noise) || work_to_grow(pilot, by_noise) > saving) return false;
-    grow(pilot, by_noise);
-    return true;
+// Whether seeing more of an integrator's error is likely to save some of `least`, the work of what follows otherwise.
+// Seeing as much again takes `again`; `to_goal` is the work that is left, by what the squared error turns out to be. By
+// noise the bound nears the value as fast as passes grow, since means over them multiply; by few tiles as a standard
+// error does. The value may be smaller as well: what could save much more than it takes is worth it anyway.
+bool worth_seeing(const SquaredError& integrator, const Pilot& pilot, double least, double again,
+                  const std::function<double(double)>& to_goal) {
+    constexpr double much_more = 20;
+    const auto& [value, bound, by_noise] = integrator;
+    const double smallest = to_goal(std::max(2 * value - bound, 0.0));
+    if (smallest == infinity) return false;
+    if (least - smallest >= much_more * again) return true;
+    const int seen = by_noise ? pilot.passes : pilot.drawings, all = by_noise ? max_passes : max_drawings;
+    for (int count = by_noise ? 2 * seen : seen + 1; count <= all; count += by_noise ? count : 1) {
+        const double times = static_cast<double>(count) / seen, cost = (times - 1) * again;
+        if (cost >= least) return false;
+        if (least - to_goal(value + (bound - value) / (by_noise ? times : std::sqrt(times))) > cost) return true;
+    }
+    return false;
 }
 
 bool same_settings(const Settings& a, const Settings& b) {
@@ -153,10 +162,7 @@ struct Entry {
     double sure = infinity, hoped = infinity;
 
     void weigh(double error) {
-        sure = choice.work_to(error);
-        Choice hopeful = choice;
-        hopeful.measured.integrator.bound = choice.measured.integrator.value;
-        hoped = hopeful.work_to(error);
+        sure = choice.work_to(error), hoped = choice.work_to(error, choice.measured.integrator.value);
     }
 };
 
@@ -185,13 +191,16 @@ Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilo
         }
         const Entry& best = *std::ranges::min_element(std::ranges::reverse_view(entries), {}, &Entry::sure);
         const Entry& hoped = *std::ranges::min_element(entries, {}, &Entry::hoped);
-        const bool hopeless = hoped.hoped == infinity;
-        const SquaredError& doubtful = (hopeless ? best : hoped).choice.measured.integrator;
-        const bool worth = hopeless ? is_undecided(doubtful, error * error)
-                                    : best.sure - hoped.hoped > work_to_grow(*pilot, doubtful.by_noise);
-        if (!chooser.systematic || !worth || !pilot->can_grow(doubtful.by_noise)) return best.choice;
+        const Choice& doubtful = (hoped.hoped == infinity ? best : hoped).choice;
+        const SquaredError& integrator = doubtful.measured.integrator;
+        double again = pilot->cost.work;
+        for (const Entry& entry : entries) again += entry.look.cost.work;
+        const auto to_goal = [&](double squared) { return doubtful.work_to(error, squared); };
+        if (!chooser.systematic || !pilot->can_grow(integrator.by_noise) ||
+            !worth_seeing(integrator, *pilot, best.sure, again, to_goal))
+            return best.choice;
         const double least = best.sure;
-        grow(*pilot, doubtful.by_noise);
+        grow(*pilot, integrator.by_noise);
         for (Entry& entry : entries) {
             if (entry.hoped > least) continue; // as long as the best is as good
             entry.choice = chooser.choice(entry.candidate, entry.look, pilot, &*before, scout);
@@ -235,56 +244,74 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
     return std::move(*best);
 }
 
-Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double samples, double until,
-               const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
-               uint32_t salt, const FrameOptions& options) {
+namespace {
+// A finer candidate that begins anew, where that takes less work than `least`: of those up to the first that leaves
+// room for noise. Else the choice itself.
+Choice finer_than(const Choice& choice, const Chooser& chooser, const std::shared_ptr<Pilot>& pilot, double least) {
+    const double error = chooser.goal.error;
+    Choice result = choice;
+    auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
+    while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
+        Look look = chooser.look_at(*next, choice.scout.get());
+        Choice finer = chooser.choice(*next, look, pilot, &choice, choice.scout);
+        const bool room = leaves_room(finer, error);
+        const double work = finer.work_to(error);
+        if (work < least || (least == infinity && room)) least = work, result = std::move(finer);
+        if (room) break;
+    }
+    return result;
+}
+}
+
+Choice checked(const Choice& choice, const CheckedPicture& picture, double until, const Mode& mode, const View& view,
+               const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t salt,
+               const FrameOptions& options) {
     if (!choice.has_integrator || choice.is_truth) return choice;
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
-    const bool rivals = has_rivals(choice, mode);
+    const bool rivals = has_rivals(choice, mode), is_bound = binds_candidates(mode, settings, goal.quality);
+    const double squared_goal = goal.error * goal.error, squared_noise = picture.noise.bound * picture.noise.bound;
     // Few samples tell little of what misses the goal anyway: all the tiles of a drawing say by how much.
-    const bool hopeless = choice.measured.integrator.bound >= goal.error * goal.error;
-    const double work = hopeless ? infinity : samples * choice.measured.sample_work;
+    const bool hopeless = choice.measured.integrator.bound >= squared_goal;
     const auto chances = [&] {
-        if (picture.variance.empty()) return even_chances(view, snapshot);
-        return rivals ? chances_between(picture, choice.scout->layers) : chances_in(picture);
+        if (picture.layers.variance.empty()) return even_chances(view, snapshot);
+        return rivals ? chances_between(picture.layers, choice.scout->layers) : chances_in(picture.layers);
     };
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
-        chances(), salt, choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; }, work);
+        chances(), salt, choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; },
+        hopeless ? double{infinity} : picture.samples * choice.measured.sample_work);
     pilot->stop = {}; // it refers to this call
     Choice result = choice;
     Look look{mode, choice.candidate.settings, choice.measured.prepared};
     SquaredError& integrator = result.measured.integrator;
     const Measured first = measure(*pilot, look, goal.clock);
     integrator = first.integrator;
-    const auto work_lacking = [&] { return result.work_to(goal.error) - samples * result.measured.sample_work; };
-    // Of what more samples would take; where that is unknown, of what those there are took.
-    const auto saving = [&] {
-        return std::min(choice.scout ? work_lacking() : samples * first.sample_work, goal.other_work);
+
+    const double begun = pilot->cost.work, work = picture.samples * first.sample_work;
+    const auto work_left = [&](double squared_integrator) {
+        const double all = work * choice.times_to(goal.error, squared_integrator, picture.noise);
+        return std::max(all - picture.done * first.sample_work, 0.0);
+    };
+    // More is seen in doubt where that takes less than what follows otherwise: more samples, a finer candidate of the
+    // main mode, which takes about as much as this one, or another mode's picture, of which it takes but a share.
+    const auto see_more = [&] {
+        const bool has_finer = mode.name == main_mode().name && !is_bound;
+        double least = std::min(work_left(integrator.bound), max_doubt_share * goal.other_work);
+        if (has_finer) least = std::min(least, work);
+        const bool by_noise = pilot->can_grow(integrator.by_noise) ? integrator.by_noise : !integrator.by_noise;
+        least -= pilot->cost.work - begun;
+        if (!pilot->can_grow(by_noise) || !worth_seeing(integrator, *pilot, least, pilot->cost.work, work_left))
+            return false;
+        grow(*pilot, by_noise);
+        return true;
     };
     const auto is_in_time = [&] { return goal.seconds == 0 || goal.clock() + pilot->cost.seconds < until; };
-    const double left = goal.error * goal.error - noise.bound * noise.bound;
-    while (left > 0 && is_undecided(integrator, left) && is_in_time() &&
-           grow_for(saving(), *pilot, integrator.by_noise))
+    while (squared_noise < squared_goal && is_undecided(integrator, squared_goal - squared_noise) && is_in_time() &&
+           see_more())
         integrator = measure(*pilot, look, goal.clock).integrator;
-    const double bound = std::hypot(std::sqrt(integrator.bound), noise.bound);
-    if (bound <= goal.error || goal.error == 0 || goal.seconds > 0 || binds_candidates(mode, settings, goal.quality))
-        return result;
-    if (rivals) return result; // the main mode is likely to be quicker than a finer one
 
-    // More samples of this one, of which some are there, or a finer one from nothing.
-    double least = std::min(work_lacking(), goal.other_work);
-    auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
-    while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
-        Look of_finer = chooser.look_at(*next, choice.scout.get());
-        Choice finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
-        while (is_undecided(finer.measured.integrator, std::pow(integrator_share * goal.error, 2)) &&
-               grow_for(least, *pilot, finer.measured.integrator.by_noise))
-            finer = chooser.choice(*next, of_finer, pilot, &choice, choice.scout);
-        const bool room = leaves_room(finer, goal.error);
-        const double its_work = finer.work_to(goal.error);
-        if (its_work < least || (least == infinity && room)) least = its_work, result = std::move(finer);
-        if (room) break;
-    }
-    return result;
+    const bool missed = integrator.bound + squared_noise > squared_goal;
+    if (!missed || goal.error == 0 || goal.seconds > 0 || is_bound || !picture.may_begin_anew) return result;
+    if (rivals) return result; // the main mode is likely to be quicker than a finer one
+    return finer_than(result, chooser, pilot, std::min(work_left(integrator.bound), goal.other_work));
 }
 }

@@ -19,6 +19,15 @@ struct Goal {
 // Of what a candidate rendered; each but the last may ask for a finer one.
 inline constexpr uint32_t max_checks = 3;
 
+// A picture to check, or a pilot of one that is to come.
+struct CheckedPicture {
+    const Layers& layers;       // show where errors may be
+    const Noise& noise;         // of the picture
+    double samples = 0;         // per pixel, for that noise
+    double done = 0;            // so far
+    bool may_begin_anew = true; // with a finer candidate
+};
+
 // How far light of several orders is off, where it is part of the image; the goal is left what that leaves of it.
 std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, const Snapshot& snapshot,
                                          const Settings& settings, Goal& goal, const FrameOptions& options);
@@ -32,9 +41,9 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
 
 // What a finished picture's integrator leaves, on tiles that it says errors may be in, independent of those that the
 // candidate was chosen by. Where that and the picture's noise are too much for the goal, a finer candidate may take its
-// place: one that takes less work than more samples do, of which the picture has `samples` per pixel so far.
-// By the goal's clock, few tiles are looked at after `until`, where the goal has seconds.
-Choice checked(const Choice& choice, const Layers& picture, const Noise& noise, double samples, double until,
-               const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
-               uint32_t salt, const FrameOptions& options);
+// place: one that takes less work than more samples do. By the goal's clock, few tiles are looked at after `until`,
+// where the goal has seconds.
+Choice checked(const Choice& choice, const CheckedPicture& picture, double until, const Mode& mode, const View& view,
+               const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t salt,
+               const FrameOptions& options);
 }

@@ -105,9 +105,11 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
     if (planned.error.moments)
         goal.error = error_beside(*planned.error.moments, goal.error).value_or(goal.error); // else it is missed
     for (uint32_t check = 1; choice && check <= max_checks; ++check) {
-        const double noise = noise_target(*choice, goal.error);
-        const Choice after = checked(*choice, pilot.layers, {noise, noise, noise}, pilot_samples, infinity, mode,
-                                     even_frame(view), snapshot, settings, goal, image_check + check, options);
+        const double bound = noise_target(*choice, goal.error), work = choice->work_to(goal.error);
+        const Noise noise{bound, bound, bound};
+        const double samples = work < infinity ? work / choice->measured.sample_work : pilot_samples;
+        const Choice after = checked(*choice, {pilot.layers, noise, samples, 0}, infinity, mode, even_frame(view),
+                                     snapshot, settings, goal, image_check + check, options);
         const bool finer = after.candidate.name != choice->candidate.name;
         choice = after;
         if (!finer) break;
@@ -136,8 +138,8 @@ Integrator measured_integrator(const Choice& choice, double target, const Mode& 
     Goal goal{target, infinity, Quality::preview};
     goal.clock = steady_seconds;
     const Settings& settings = choice.candidate.settings;
-    const Choice after = checked(choice, image, noise, samples, infinity, mode, even_frame(view), snapshot, settings,
-                                 goal, salt, options);
+    const Choice after = checked(choice, {image, noise, samples, samples}, infinity, mode, even_frame(view), snapshot,
+                                 settings, goal, salt, options);
     const SquaredError& error = after.measured.integrator;
     return {{std::sqrt(error.value), std::sqrt(error.bound)}, choice.candidate.name, settings};
 }

@@ -183,15 +183,18 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;
         Goal asked = goal;
         if (!is_timed) asked.seconds = 0; // the limit of what is far: a finer candidate may get there in less
-        const Choice after = checked(*rounds.choice, result, *stats.noise, stats.samples, until, mode, rounds.view,
-                                     snapshot, settings, asked, check, options);
+        const double samples = stats.samples;
+        const Choice after = checked(*rounds.choice, {result, *stats.noise, samples, samples, check < max_checks},
+                                     until, mode, rounds.view, snapshot, settings, asked, check, options);
         if (after.candidate.name != rounds.choice->candidate.name) {
             begin(after, rounds, rendering, stats);
             continue;
         }
         rounds.choice = after;
         note_integrator(after, stats);
-        const bool worth = !has_rivals(after, mode) || leaves_room(after, goal.error);
+        const double times = after.times_to(goal.error, after.measured.integrator.bound, *stats.noise);
+        const double left = (times - 1) * samples * after.measured.sample_work;
+        const bool worth = !has_rivals(after, mode) || left < goal.other_work;
         if (goal.error > 0 && worth && rounds.freedom > 0 && !judge(rounds, result, stats))
             render_rounds(rounds, rendering, next_round(rounds, stats), result, stats, round);
         break;

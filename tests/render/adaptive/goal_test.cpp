@@ -174,7 +174,7 @@ TEST(Goal, ChecksAreIndependentOfEachOtherAndOfTheChoice) {
     ASSERT_GT(choice.measured.integrator.value, 0);
     std::vector<double> bounds{choice.measured.integrator.bound};
     for (const uint32_t salt : {1u, 2u}) {
-        const Choice after = checked(choice, choice.scout->layers, {}, 4, infinity, march, example.view,
+        const Choice after = checked(choice, {choice.scout->layers, {}, 4, 4}, infinity, march, example.view,
                                      example.snapshot, example.settings, goal, salt, {});
         EXPECT_EQ(after.candidate.name, choice.candidate.name);
         EXPECT_EQ(std::ranges::count(bounds, after.measured.integrator.bound), 0) << salt;
@@ -188,7 +188,7 @@ TEST(Goal, WhatSeemsToMissTheTargetIsLookedAtNoLongerThanAnotherModeTakes) {
     Goal goal{1, 0, Quality::preview, steady_seconds};
     const Choice choice = choose(main_mode(), example.view, example.snapshot, example.settings, goal, 0, {});
     const auto integrator = [&] {
-        return checked(choice, choice.scout->layers, {}, 4, infinity, main_mode(), example.view, example.snapshot,
+        return checked(choice, {choice.scout->layers, {}, 4, 4}, infinity, main_mode(), example.view, example.snapshot,
                        example.settings, goal, 1, {})
             .measured.integrator;
     };

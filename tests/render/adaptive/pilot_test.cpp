@@ -254,16 +254,18 @@ TEST(Pilot, AChoiceGetsToTheErrorWhereAFinerCandidateDoes) {
     const Choice choice = choose(mode, view, snapshot, settings_for(Quality::preview), goal, 0, plain);
     EXPECT_GT(choice.pilot->passes * choice.pilot->drawings, 1) << "the pilot has grown";
     EXPECT_NE(choice.candidate.name, "draft");
-    EXPECT_LT(choice.samples_to(goal.error), infinity);
+    EXPECT_LT(choice.work_to(goal.error), infinity);
 }
 
 namespace {
 // As the march on the average; a ray is 70 % off.
+std::atomic<size_t> flickering_rays;
 ScatterFunction prepare_flickering(const View& view, const Snapshot& snapshot, const Settings& settings,
                                    History* history) {
     const ScatterFunction right = main_mode().prepare(view, snapshot, settings, history);
     return [right](const RayBatch& batch, std::span<Scatter> results) {
         right(batch, results);
+        flickering_rays += results.size();
         for (size_t i = 0; i < results.size(); ++i) results[i].radiance *= hash(batch.ids[i], 1u) % 2 ? 1.7f : 0.3f;
     };
 }
@@ -281,6 +283,28 @@ TEST(Pilot, GrowsUntilItsOwnNoiseLeavesTheErrorToTheImage) {
     EXPECT_GT(choice.pilot->passes, 8);
     EXPECT_GT(noise_target(choice, goal.error), 0.8 * goal.error);
     EXPECT_LT(choice.pilot->cost.work, 0.5 * choice.work_to(goal.error));
+}
+
+// A finer candidate takes about as much as the picture did: no more than that is spent on whether one is needed.
+TEST(Goal, DoubtsTakeNoMoreThanThePictureTook) {
+    Mode mode = main_mode();
+    mode.prepare = prepare_flickering;
+    const View view = view_of({160, 90});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {sun_light({0, -1, -0.2f})});
+    const Settings settings = settings_for(Quality::preview);
+    Goal goal{0.5, 0, Quality::preview, steady_seconds};
+    const Choice choice = choose(mode, view, snapshot, settings, goal, 0, plain);
+    ASSERT_FALSE(choice.is_truth);
+    goal.error = 0.05;
+    const Noise noise{0.04, 0.049, 0.045};
+    const auto rays_for = [&](double samples) {
+        flickering_rays = 0;
+        checked(choice, {choice.scout->layers, noise, samples, samples, false}, infinity, mode, view, snapshot,
+                settings, goal, 1, plain);
+        return static_cast<double>(flickering_rays) / (160 * 90);
+    };
+    EXPECT_LE(rays_for(1), 1.2 + 2.0 * drawing_tiles * 16 / (160 * 90)) << "and the first look";
+    EXPECT_GT(rays_for(1000), 4 * rays_for(1)) << "what more would take is worth a longer one";
 }
 
 // A frame that glows, with settings of another that did not: it is held against its glow, and gets it back.
