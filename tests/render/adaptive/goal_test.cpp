@@ -182,6 +182,22 @@ TEST(Goal, ChecksAreIndependentOfEachOtherAndOfTheChoice) {
     }
 }
 
+TEST(Goal, AFinerCandidateIsNamedOnlyWhereOneMayBegin) {
+    const Example example("window");
+    Goal goal{1, 0, Quality::preview, steady_seconds};
+    const Choice choice = choose(main_mode(), example.view, example.snapshot, example.settings, goal, 0, {});
+    ASSERT_GT(choice.measured.integrator.value, 0);
+    goal.error = 0.1 * std::sqrt(choice.measured.integrator.value);
+    const auto after = [&](bool may_begin_anew) {
+        return checked(choice, {choice.scout->layers, {}, 4, 4, may_begin_anew}, infinity, main_mode(), example.view,
+                       example.snapshot, example.settings, goal, 1, {});
+    };
+    EXPECT_NE(after(true).candidate.name, choice.candidate.name);
+    const Choice kept = after(false);
+    EXPECT_EQ(kept.candidate.name, choice.candidate.name);
+    EXPECT_GT(kept.measured.integrator.bound, goal.error * goal.error) << "and its own error is told";
+}
+
 // Nor is more seen of a doubtful error than another mode would cost.
 TEST(Goal, WhatSeemsToMissTheTargetIsLookedAtNoLongerThanAnotherModeTakes) {
     const Example example("window");
