@@ -9,8 +9,8 @@
 
 namespace tyndall {
 namespace {
-// Of scenes drawn by chance: what measuring the other modes takes over what the main one took, in the median; and how
-// often one whose integrator leaves little room for noise misses a target that it seemed to get to.
+// Seen on scenes drawn by chance: the time that measuring the other modes takes, as a share of what the main one took
+// (the median), and how often a mode whose integrator leaves little room for noise misses the error.
 constexpr double others_share = 0.25, chance_to_miss = 0.5;
 
 // A mode with candidates yet to measure.
@@ -96,7 +96,7 @@ void add(Contender contender, const Goal& goal, Contest& contest) {
     if (wins) contest.winner = contest.contenders.size() - 1;
 }
 
-// A candidate of another mode, beside the main mode's choice, which takes so many seconds where this one misses.
+// A candidate of another mode, beside the main mode's choice, whose picture takes `main_seconds`.
 Contender measured_beside(const Choice& main, double main_seconds, const Mode& mode, const Candidate& candidate,
                           const Goal& goal) {
     Contender contender{&mode,
@@ -134,13 +134,13 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     const Choice first = main.choice;
     const double main_seconds = main.seconds, begun = goal.clock();
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : main_seconds);
-    const bool is_quick = goal.seconds == 0 && main.gets_there() && allowed < others_share * (begun - start);
+    const bool too_costly = goal.seconds == 0 && main.gets_there() && allowed < others_share * (begun - start);
     const bool same_light = max_component(snapshot.ambient) == 0; // path tracing shadows it, the truth does not
     const bool noisy = same_light && (share == infinity || !main.gets_there() || modes.size() == 1);
     if (std::ranges::count(modes, main.mode->name, &Mode::name)) add(std::move(main), goal, contest);
 
     std::vector<Runner> runners;
-    if (first.scout && (!is_quick || contest.contenders.empty()))
+    if (first.scout && (!too_costly || contest.contenders.empty()))
         runners = runners_of(modes, settings, goal.quality, noisy);
     const size_t all = std::max<size_t>(runners.size(), 1);
     while (!runners.empty()) {

@@ -15,7 +15,7 @@ namespace {
 constexpr double truth_share = 0.1, measuring_share = 0.4, scout_share = 0.2;
 constexpr double truth_work_share = 0.2;  // of the picture's work, where no time is given
 constexpr double max_orders_share = 0.15; // of the seconds there are: to measure multiple scattering
-constexpr double max_doubt_share = 0.25;  // of the main mode's work, where the picture is another one's
+constexpr double max_doubt_share = 0.25;  // of the main mode's work: to look again at another mode's picture
 constexpr int truth_marches = 64;         // from so many nodes of a ray the truth marches to each light
 
 // Whether a finer candidate is as wrong as the one before.
@@ -36,7 +36,7 @@ bool is_undecided(const SquaredError& error, double wanted) {
 // Whether seeing more of an integrator's error is likely to save some of `least`, the work of what follows otherwise.
 // Seeing as much again takes `again`; `to_goal` is the work that is left, by what the squared error turns out to be. By
 // noise the bound nears the value as fast as passes grow, since means over them multiply; by few tiles as a standard
-// error does. The value may be smaller as well: what could save much more than it takes is worth it anyway.
+// error does. The value itself may turn out smaller: a look that could save many times its cost is worth taking.
 bool worth_seeing(const SquaredError& integrator, const Pilot& pilot, double least, double again,
                   const std::function<double(double)>& to_goal) {
     constexpr double much_more = 20;
