@@ -90,6 +90,7 @@ class Truth:
     variance: dict  # of a layer's mean, averaged over pixels and channels
     bound: float  # that its own error is surely below
     seconds: float = 0  # of processors
+    dark: int = 0  # drawings of the seed before this one that nothing lit
 
     def size(self):
         height, width, _ = self.layers["beauty"].shape
@@ -105,7 +106,8 @@ def error_of(layers, variance):
 
 
 def save_truth(truth, attempt, path):
-    np.savez(path, attempt=attempt, bound=truth.bound, seconds=truth.seconds, **{layer: truth.layers[layer] for layer in LAYERS},
+    np.savez(path, attempt=attempt, bound=truth.bound, seconds=truth.seconds, dark=truth.dark,
+             **{layer: truth.layers[layer] for layer in LAYERS},
              **{f"{layer}_variance": truth.variance[layer] for layer in LAYERS})
 
 
@@ -113,7 +115,7 @@ def load_truth(path):
     """The truth and the attempt it belongs to."""
     with np.load(path) as kept:
         layers, variance = [{layer: kept[layer + end] for layer in LAYERS} for end in ("", "_variance")]
-        return Truth(layers, variance, float(kept["bound"]), float(kept["seconds"])), int(kept["attempt"])
+        return Truth(layers, variance, float(kept["bound"]), float(kept["seconds"]), int(kept["dark"])), int(kept["attempt"])
 
 
 def error_against(truth, layers):

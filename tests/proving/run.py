@@ -20,7 +20,7 @@ from authored import AUTHORED
 from families import FAMILIES, draw, family_of
 from pictures import error_against, load_truth, render, save_truth
 from scene_files import write_scene
-from truths import HOPE, find_truth
+from truths import HOPE, Dark, find_truth
 
 SOURCE = pathlib.Path(__file__).parents[2]
 ATTEMPTS = 6
@@ -34,7 +34,7 @@ LADDER = [("draft", 1), ("draft", 2), ("draft", 4), ("preview", 4), ("preview", 
 
 def scene_with_truth(seed, folder, wanted, options):
     """The first drawing of a seed whose truth, in the size drawn or else in the smallest, is found with one of the errors wanted:
-    scene file, frame, truth and how many drawings went before. Truths are kept in a folder, where there is one."""
+    scene file, frame, truth and how many drawings took too long before. Truths are kept in a folder, where there is one."""
     families = AUTHORED if getattr(options, "authored", False) else FAMILIES
     program, known = options.program, options.truths / f"{seed}.npz" if options.truths else None
 
@@ -44,7 +44,8 @@ def scene_with_truth(seed, folder, wanted, options):
     if known and known.exists():
         truth, attempt = load_truth(known)
         drawn, _ = draw(seed, attempt, families)
-        return written(drawn, truth.size(), folder / f"{seed}.{attempt}"), drawn.frame, truth, attempt
+        return written(drawn, truth.size(), folder / f"{seed}.{attempt}"), drawn.frame, truth, attempt - truth.dark
+    dark = 0
     for attempt in range(ATTEMPTS):
         drawn, drawn_size = draw(seed, attempt, families)
         sizes = [options.size] if options.size else list(dict.fromkeys([drawn_size, SMALLEST]))
@@ -53,11 +54,16 @@ def scene_with_truth(seed, folder, wanted, options):
             scene = written(drawn, size, place)
             plain = written(drawn.plain, size, place / "plain") if drawn.plain else scene
             hope = HOPE if size == sizes[-1] else 1
-            truth = find_truth(program, plain, size, drawn.frame, place, wanted, options.truth_seconds, hope)
+            try:
+                truth = find_truth(program, plain, size, drawn.frame, place, wanted, options.truth_seconds, hope)
+            except Dark:
+                dark += 1
+                break
             if truth:
+                truth.dark = dark
                 if known:
                     save_truth(truth, attempt, known)
-                return scene, drawn.frame, truth, attempt
+                return scene, drawn.frame, truth, attempt - dark
     return None, 1, None, ATTEMPTS
 
 
@@ -85,7 +91,8 @@ def prove(seed, options):
     try:
         errors = {target: TRUTH_SHARE * target for target in options.targets}
         scene, frame, truth, redrawn = scene_with_truth(seed, folder, list(errors.values()), options)
-        common = {"seed": seed, "family": family_of(seed, AUTHORED if options.authored else FAMILIES).__name__, "redrawn": redrawn}
+        common = {"seed": seed, "family": family_of(seed, AUTHORED if options.authored else FAMILIES).__name__,
+                  "redrawn": redrawn, "dark": truth.dark if truth else 0}
         known = [target for target, error in errors.items() if truth and truth.bound <= error]
         rows = [common | {"asked": target, "no_truth": True} for target in options.targets if target not in known]
         if truth is None:
@@ -166,7 +173,8 @@ def summary(rows):
         "scenes": len({row["seed"] for row in runs}),
         "without_truth": len({row["seed"] for row in rows} - {row["seed"] for row in runs}),
         "targets_without_truth": len(rows) - len(runs),
-        "redrawn": len({row["seed"] for row in rows if row["redrawn"]}), "runs": len(runs),
+        "redrawn": len({row["seed"] for row in rows if row["redrawn"]}), "dark": len({row["seed"] for row in rows if row["dark"]}),
+        "runs": len(runs),
         "met": share([row for row in runs if met(row)], runs), "bound_true": share([r for r in answered if r not in false], answered),
         "refused": share(refusals, runs), "bound_by_achieved": ratio("bound", "achieved", [
             row for row in answered if row["bound"] and row["achieved"]]),

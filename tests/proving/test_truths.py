@@ -10,6 +10,7 @@ from windows import divide, inside
 
 SIZE = (48, 32)
 WANTED = 0.004
+PRICES = {"beams": 0.5, "bare": 1, "coarse": 2, "fine": 4, "grid": 20, "exact": 50}
 
 
 class Known:
@@ -31,12 +32,12 @@ class Known:
         place = np.s_[y0:y1, x0:x1]
         random = np.random.default_rng([self.seed, seed])
         noise = random.standard_normal((2, y1 - y0, x1 - x0, 3)) / np.sqrt(samples)
-        off = {"bare": 0.3, "coarse": 0.05, "fine": 0.01, "grid": 1e-4, "exact": 0}[recipe]
-        took = 1e-3 + 1e-7 * samples * (x1 - x0) * (y1 - y0) * {"bare": 1, "coarse": 2, "fine": 4, "grid": 20, "exact": 50}[recipe]
+        off = {"beams": 0.3, "bare": 0.3, "coarse": 0.05, "fine": 0.01, "grid": 1e-4, "exact": 0}[recipe]
+        took = 1e-3 + 1e-7 * samples * (x1 - x0) * (y1 - y0) * PRICES[recipe]
         renderer.left -= took
         if renderer.left < 0:
             raise truths.TooLong()
-        return {"surface": self.surface[place] + self.noise[place] * noise[0] + (off if recipe != "bare" else 0.01),
+        return {"surface": self.surface[place] + self.noise[place] * noise[0] + (off if recipe not in ("beams", "bare") else 0.01),
                 "fog": self.fog[place] + off + (0.1 + off) * noise[1]}, took
 
     def find(self, seconds=1e3):

@@ -12,6 +12,7 @@ from windows import allot, area_of, cautious, divide, inside
 RUNS = 4  # independent pictures of a truth
 THREADS, MOST_SAMPLES = 2, 4096
 FEWEST_SAMPLES, FEWEST_DIFFERENCES = 4, 2  # a single one would be the centres of pixels
+COARSER = 3  # than the picture, each way: those that recipes are chosen by
 STEP = 16   # variances fall by this factor at most at once: far from what is wanted, little is known
 HOPE = 4    # forecasts may be as many times too long, where there is nothing else to try
 FINER = 8   # times as many moments of motion blur as usual, at most
@@ -20,21 +21,27 @@ AIM = 0.85  # of the variance wanted
 SURE = 1.645  # deviations: variances are below what is counted on in 95 %
 PARTS = ("surface", "fog")
 SAME_RAYS = ("--set", "pixel.edge_samples=1", "--set", "pixel.lamp_samples=1")
-BARE, EXACT = "bare", "exact"
+BEAMS, BARE, EXACT = "beams", "bare", "exact"
 COARSE = ("march.step_depth=0.25", "march.step_voxels=8", "march.step_share=0.036", "march.min_transmittance=0.001",
           "terms.light=grid", "terms.light_resolution=65")
 RECIPES = {  # from quick to exact; what each departs from the reference in
-    BARE: (*COARSE, "march.visibility=intervals", "march.near_light=10", "march.nodes=1"),  # for surfaces alone
+    BEAMS: ("terms.light=grid", "terms.light_resolution=65"),  # for surfaces alone: light in fog is another technique's
+    BARE: (*COARSE, "march.visibility=intervals", "march.near_light=10", "march.nodes=1"),  # for surfaces alone, too
     "coarse": (*COARSE, "march.visibility=intervals", "march.near_light=0.5", "march.nodes=4"),
     "fine": ("march.visibility=intervals", "march.step_depth=0.1", "march.step_voxels=2", "march.step_share=0.0104",
              "march.near_light=0.25", "march.min_transmittance=0.0001", "march.nodes=6", "terms.light=grid",
              "terms.light_resolution=129"),
     "grid": ("terms.light=grid",),
     EXACT: ()}
+MODES = {BEAMS: "billboard"}  # others march
 
 
 class TooLong(Exception):
     pass
+
+
+class Dark(Exception):
+    """No light in the fog, or none at all: nothing that an error could be relative to."""
 
 
 def doubt(variances):
@@ -58,12 +65,12 @@ class Renderer:
         self.moments = None  # options: as many as motion blur is to be made of
 
     def finer_moments(self):
-        usual = self.made(["--samples", 1, "--crop", "0,0,4,4"]).stats["frames"][0].get("time_samples", 1)
+        usual = self.made(EXACT, ["--samples", 1, "--crop", "0,0,4,4"]).stats["frames"][0].get("time_samples", 1)
         return ["--time-samples", max(min(FINER * usual, MOST_MOMENTS), 2 * usual)] if usual > 1 else []
 
-    def made(self, options):
+    def made(self, recipe, options):
         run = render(self.program, self.scene, self.folder / "truth.exr",
-                     ["--mode", "march", "--frames", self.frame, *options], THREADS, max(10 * self.left, 60), max(self.left, 1))
+                     ["--mode", MODES.get(recipe, "march"), "--frames", self.frame, *options], THREADS, max(10 * self.left, 60), max(self.left, 1))
         self.left -= run.processor
         if self.left < 0 or run.layers is None:
             raise TooLong(run.said)
@@ -74,7 +81,7 @@ class Renderer:
         if self.moments is None:
             self.moments = self.finer_moments()
         options = ["--quality", "reference", "--samples", samples, "--seed", seed, *self.moments]
-        run = self.made([*options, *(word for row in RECIPES[recipe] for word in ("--set", row)), *more])
+        run = self.made(recipe, [*options, *(word for row in RECIPES[recipe] for word in ("--set", row)), *more])
         return parts_of(run.layers), run.processor
 
 
@@ -146,43 +153,45 @@ class Level:
         return min([(self.cost(added), self.add, added), (self.cost(anew), self.take, anew)], key=lambda choice: choice[0])
 
 
-def recipes_of_fog(renderer, size, wanted):
-    """Recipes from quick to exact whose differences take least time together (Giles 2008, several levels), told from two
-    small pictures by each; and what each recipe takes for a picture of no samples."""
-    small = ["--res", f"{size[0] // 2}x{size[1] // 2}", *SAME_RAYS]
+def chains_of(renderer, size, wanted):
+    """For each part, recipes from quick to exact whose differences take least time together (Giles 2008, several levels),
+    told from two small pictures by each; and what each recipe takes for a picture of no samples."""
+    small = ["--res", f"{size[0] // COARSER}x{size[1] // COARSER}", *SAME_RAYS]
     samples, made, seconds, start = 2, {}, {}, {}
     for recipe in RECIPES:
         start[recipe] = renderer.picture(recipe, samples, 1, [*small, "--crop", "0,0,4,4"])[1]
-        if recipe == BARE:
-            continue
         runs = [renderer.picture(recipe, samples, seed, small) for seed in (1, 2)]
-        made[recipe] = [parts["fog"] for parts, _ in runs]
-        seconds[recipe] = 4 / samples * max(np.mean([took for _, took in runs]) - start[recipe], 1e-3)
-    mean = max(np.mean(made[EXACT]), 1e-30)
+        made[recipe] = {part: np.array([parts[part] for parts, _ in runs]) for part in PARTS}
+        seconds[recipe] = COARSER ** 2 / samples * max(np.mean([took for _, took in runs]) - start[recipe], 1e-3)
+    fog = np.mean(made[EXACT]["fog"])
+    means = {"surface": max(np.mean(made[EXACT]["surface"]) + fog, 1e-30), "fog": max(fog, 1e-30)}
 
-    def root_of_variance(quick, better):
+    def root_of_variance(part, quick, better):
         """Of a sample, as far as windows let it count."""
-        differences = np.array(made[better]) - (made[quick] if quick else 0)
+        differences = made[better][part] - (made[quick][part] if quick else 0)
         tiles, areas = cautious(np.var(differences, 0, ddof=1).mean(-1))
-        return np.sqrt(samples) / mean * (np.sqrt(tiles) * areas).sum() / areas.sum()
+        return np.sqrt(samples) / means[part] * (np.sqrt(tiles) * areas).sum() / areas.sum()
 
-    def cost(chain):
+    def cost(part, chain):
         levels = list(zip((None, *chain), chain))
-        roots = np.array([root_of_variance(*level) for level in levels])
+        roots = np.array([root_of_variance(part, *level) for level in levels])
         times = np.array([seconds[b] + (seconds[a] if a else 0) for a, b in levels])
         counts = (roots * np.sqrt(times)).sum() * roots / np.sqrt(times) / (RUNS * wanted ** 2)
         return RUNS * (np.maximum(counts, FEWEST_DIFFERENCES) * times).sum()
 
-    quicker = [recipe for recipe in made if recipe != EXACT]
-    chains = [(*some, EXACT) for count in range(len(quicker) + 1) for some in itertools.combinations(quicker, count)]
-    return min(chains, key=cost), start
+    surfaces_alone = [BEAMS, BARE]
+    quicker = [recipe for recipe in made if recipe not in (*surfaces_alone, EXACT)]
+    chains = {"surface": [(recipe, EXACT) for recipe in surfaces_alone],
+              "fog": [(*some, EXACT) for count in range(len(quicker) + 1) for some in itertools.combinations(quicker, count)]}
+    return {part: min(of_part, key=lambda chain: cost(part, chain)) for part, of_part in chains.items()}, start
 
 
 def levels_of(renderer, size, wanted):
-    chain, start = recipes_of_fog(renderer, size, wanted)
-    last = {"surface": BARE} | ({"fog": chain[-2]} if len(chain) > 1 else {})
-    rows = [({"surface": BARE}, {}), *(({"fog": recipe}, {}) for recipe in chain[:-1][:1]),
-            *(({"fog": better}, {"fog": quick}) for quick, better in zip(chain[:-1], chain[1:-1])),
+    chains, start = chains_of(renderer, size, wanted)
+    surface, fog = chains["surface"][0], chains["fog"]
+    last = {"surface": surface} | ({"fog": fog[-2]} if len(fog) > 1 else {})
+    rows = [({"surface": surface}, {}), *(({"fog": recipe}, {}) for recipe in fog[:-1][:1]),
+            *(({"fog": better}, {"fog": quick}) for quick, better in zip(fog[:-1], fog[1:-1])),
             ({"surface": EXACT, "fog": EXACT}, last)]
     return [Level(renderer, size, plus, minus, start) for plus, minus in rows]
 
@@ -214,7 +223,7 @@ def aim_of(costs, left, hope):
 
 def find_truth(program, scene, size, frame, folder, wanted, seconds, hope=HOPE):
     """The truth with an error that is surely at most one of those wanted, the smallest there is processor time for; None
-    where that is none. Quick pictures, corrected by how far they are from better ones through the same few rays, and so on
+    where that is none; raises Dark. Quick pictures, corrected by how far they are from better ones through the same few rays, and so on
     to exact ones. What is noisiest, a level or a window of one, takes most samples. What is known of the error comes from
     differences between independent pictures alone, and from how many of them."""
     renderer, best = Renderer(program, scene, frame, folder, seconds), None
@@ -224,7 +233,7 @@ def find_truth(program, scene, size, frame, folder, wanted, seconds, hope=HOPE):
             mean = {part: sum(level.mean(part) for level in levels) for part in PARTS}
             layers = dict(zip(LAYERS, (mean["surface"] + mean["fog"], mean["fog"])))
             if min(layer.mean() for layer in layers.values()) <= 0:
-                return None
+                raise Dark()
             pixels = {layer: np.array([level.variance(*parts) for level in levels]) / RUNS
                       for layer, parts in zip(LAYERS, (PARTS, ("fog",)))}
             variance = {layer: float(values.sum(0).mean()) for layer, values in pixels.items()}
