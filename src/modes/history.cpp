@@ -1,8 +1,11 @@
 #include "modes/history.h"
-#include "scene/light.h"
+#include "scene/area_shape.h"
+#include "scene/gobo.h"
+#include "scene/light_filter.h"
 #include "trace/snapshot.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 namespace tyndall {
@@ -24,44 +27,66 @@ bool is_cut(const View& a, const View& b, const Snapshot& snapshot) {
            glm::dot(from.up, to.up) < cut_cosine || glm::length(to.position - from.position) > far;
 }
 
-std::vector<vec3> lights_of(const Snapshot& snapshot) {
-    std::vector<vec3> lights;
-    for (const Light& light : snapshot.lights)
-        lights.insert(lights.end(), {light.intensity * light.volume_scale, is_distant(light) ? vec3(0) : light.position,
-                                     !is_aimed(light) ? vec3(0) : light.direction});
-    return lights;
-}
-
 // Whether a light is another, or was switched.
-bool switched_lights(std::span<const vec3> from, std::span<const vec3> to) {
-    if (from.size() != to.size()) return true;
-    for (size_t i = 0; i < from.size(); i += 3) {
-        const vec3 least = glm::min(from[i], to[i]), most = glm::max(from[i], to[i]);
-        if (!glm::all(glm::greaterThanEqual(least, switched * most))) return true;
-    }
-    return false;
+bool is_switched(const Light& from, const Light& to) {
+    const vec3 was = from.intensity * from.volume_scale, is = to.intensity * to.volume_scale;
+    return from.kind != to.kind || !glm::all(glm::greaterThanEqual(glm::min(was, is), switched * glm::max(was, is)));
 }
 
-// Of as many lights: whether one would leave a trail.
-bool moved_lights(std::span<const vec3> from, std::span<const vec3> to, vec3 eye) {
-    for (size_t i = 0; i < from.size(); i += 3) {
-        if (glm::distance(from[i + 1], to[i + 1]) > moved_on * glm::distance(to[i + 1], eye)) return true;
-        if (glm::distance(from[i + 2], to[i + 2]) > moved_on) return true;
-    }
+bool is_turned(const LightAxes& from, const LightAxes& to) {
+    return glm::distance(from.right, to.right) > moved_on || glm::distance(from.up, to.up) > moved_on;
+}
+
+bool is_same(const Gobo* from, const Gobo* to) {
+    return from == to || (from && to && !to->content.empty() && from->content == to->content);
+}
+
+// Whether what goes where has changed.
+bool shines_otherwise(const LightFilter* from, const LightFilter* to) {
+    if (from == to) return false;
+    if (!from || !to || from->profile != to->profile || !is_same(from->gobo.get(), to->gobo.get())) return true;
+    return (to->profile && is_turned(from->profile_axes, to->profile_axes)) ||
+           (to->gobo &&
+            (is_turned(from->gobo_axes, to->gobo_axes) || glm::distance(from->gobo_half, to->gobo_half) > moved_on));
+}
+
+bool is_reshaped(const AreaShape* from, const AreaShape* to) {
+    if (from == to) return false;
+    if (!from || !to || !is_same(from->picture.get(), to->picture.get())) return true;
+    return is_turned({from->right, from->up}, {to->right, to->up}) ||
+           glm::distance(from->half, to->half) > moved_on * glm::length(to->half);
+}
+
+// Whether a light would leave a trail.
+bool leaves_trail(const Light& from, const Light& to, vec3 eye) {
+    if (!is_distant(to) && glm::distance(from.position, to.position) > moved_on * glm::distance(to.position, eye))
+        return true;
+    if (is_aimed(to) && glm::distance(from.direction, to.direction) > moved_on) return true;
+    const float cones = std::abs(from.inner_cone - to.inner_cone) + std::abs(from.outer_cone - to.outer_cone);
+    return (to.kind == LightKind::spot && cones > moved_on) || shines_otherwise(from.filter.get(), to.filter.get()) ||
+           is_reshaped(from.area.get(), to.area.get());
+}
+
+bool any_pair(std::span<const Light> from, std::span<const Light> to, const auto& holds) {
+    for (size_t i = 0; i < from.size(); ++i)
+        if (holds(from[i], to[i])) return true;
     return false;
 }
 }
 
 int follow(History& history, const View& view, const Snapshot& snapshot, const Settings& settings) {
-    std::vector<vec3> lights = lights_of(snapshot);
+    const std::vector<Light>& lights = snapshot.lights;
     bool goes_on = history.frames > 0 && history.scene == snapshot.scene && history.view.size == view.size &&
                    !is_cut(history.view, view, snapshot) && same(history.settings, settings) &&
-                   !switched_lights(history.lights, lights);
+                   history.lights.size() == lights.size() && !any_pair(history.lights, lights, is_switched);
     // Froxels clamp what they remember to what they see around: a light may wander through them.
-    if (goes_on && !history.froxels) goes_on = !moved_lights(history.lights, lights, view.camera.position);
+    if (goes_on && !history.froxels)
+        goes_on = !any_pair(history.lights, lights, [&](const Light& from, const Light& to) {
+            return leaves_trail(from, to, view.camera.position);
+        });
     if (!goes_on) history = {};
     history.view = view, history.settings = settings;
-    history.scene = snapshot.scene, history.lights = std::move(lights);
+    history.scene = snapshot.scene, history.lights = lights;
     return history.frames++;
 }
 }

@@ -1,6 +1,7 @@
 // What a mode keeps from one frame to the next.
 #pragma once
 #include "modes/settings.h"
+#include "scene/light.h"
 #include "trace/view.h"
 
 #include <memory>
@@ -18,13 +19,13 @@ struct History {
     View view;      // of the last frame
     Settings settings;
     const Scene* scene = nullptr;
-    std::vector<vec3> lights; // of each: what it shone into the fog, where it was, which way it shone
+    std::vector<Light> lights;
     std::shared_ptr<FroxelHistory> froxels;
     std::shared_ptr<const FogBuffer> picture;
 };
 
 // Notes the frame that begins. The history is emptied first when this frame does not go on from the last one: another
-// scene, picture size, lens or settings, a cut, or a light switched or moved on. Returns the number of frames it
-// reaches back.
+// scene, picture size, lens or settings, a cut, or a light switched, moved on or shining another way. Returns the
+// number of frames it reaches back.
 int follow(History& history, const View& view, const Snapshot& snapshot, const Settings& settings);
 }

@@ -1,6 +1,9 @@
 #include "modes/history.h"
-#include "scene/light.h"
+#include "scene/area_shape.h"
+#include "scene/gobo.h"
+#include "scene/light_filter.h"
 #include "scene/scene.h"
+#include "trace/small_scenes.h"
 #include "trace/snapshot.h"
 
 #include <gtest/gtest.h>
@@ -44,6 +47,26 @@ TEST(History, GoesOnWhileThePictureDoes) {
     EXPECT_FALSE(resets([&] { snapshot.lights[0].position.x += 0.002f; })) << "a light that hardly moves";
     snapshot.lights[0].kind = LightKind::sun;
     EXPECT_TRUE(resets([&] { snapshot.lights[0].direction.x += 0.001f; })) << "a sun that moves";
+    history.froxels = nullptr;
+    snapshot.lights[0].kind = LightKind::spot;
+    EXPECT_TRUE(resets([&] { snapshot.lights[0].outer_cone *= 0.99f; })) << "a beam that gets narrow";
+    LightFilter filter;
+    const auto filtered = [&](const auto& change) {
+        return resets([&] { change(), snapshot.lights[0].filter = std::make_shared<LightFilter>(filter); });
+    };
+    EXPECT_TRUE(filtered([&] { filter.gobo = board_gobo(2, 4, vec3(1), vec3(0)); })) << "a gobo put in";
+    EXPECT_FALSE(filtered([] {})) << "the same gobo";
+    EXPECT_TRUE(filtered([&] { filter.gobo = board_gobo(3, 4, vec3(1), vec3(0)); })) << "its next image";
+    EXPECT_TRUE(filtered([&] { filter.gobo_axes = light_axes(filter.direction, {0, 1, 0}, 0.1f); })) << "a turn of it";
+    EXPECT_TRUE(filtered([&] { filter.gobo_half *= 1.1f; })) << "a larger one";
+    AreaShape shape;
+    const auto shaped = [&](const auto& change) {
+        return resets([&] { change(), snapshot.lights[0].area = std::make_shared<AreaShape>(shape); });
+    };
+    EXPECT_TRUE(shaped([] {})) << "a face instead of a spot";
+    EXPECT_FALSE(shaped([] {})) << "the same face";
+    EXPECT_TRUE(shaped([&] { shape.right = vec3(0, 0, 1), shape.up = vec3(1, 0, 0); })) << "a face turned in its plane";
+    EXPECT_TRUE(shaped([&] { shape.half *= 1.1f; })) << "a larger face";
     Scene other;
     EXPECT_TRUE(resets([&] { snapshot.scene = &other; })) << "scene";
 }

@@ -11,6 +11,7 @@
 
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
+#include "scene/gobo.h"
 #include "scene/light.h"
 #include "volume/medium.h"
 
@@ -83,6 +84,32 @@ double off_after(Trial& trial, float factor, int frames) {
 }
 double left_when_out(Trial& trial) { return off_after(trial, 0, static_cast<int>(trial.value)); }
 double left_when_dimmed(Trial& trial) { return off_after(trial, static_cast<float>(trial.value), 4); }
+
+// Film in a spot: its gobo's image is another one in every frame of a sequence.
+StressScene film(int squares) {
+    Light spot = spot_at(0.3f);
+    spot.radius = 0;
+    return spot_and_sun(filtered_light(spot, nullptr, board_gobo(squares, 8, vec3(1), vec3(0))));
+}
+StressScene first_image(double) { return film(2); }
+
+// The share of the change from one image to the next that is missing so many frames later: noise averages out.
+double left_of_image(Trial& trial) {
+    History history;
+    settle(trial, trial.scene, history);
+    const StressScene next = film(3);
+    Layers last;
+    for (int i = 0; i < static_cast<int>(trial.value); ++i)
+        last = next_frame(trial, next, trial.scene, long_enough + i, history);
+    const Layers first = trial.render(), whole = trial.render(next);
+    double left = 0, change = 0;
+    for (size_t i = 0; i < whole.inscatter.pixels.size(); ++i) {
+        const dvec3 way = dvec3(first.inscatter.pixels[i]) - dvec3(whole.inscatter.pixels[i]);
+        left += glm::dot(dvec3(last.inscatter.pixels[i]) - dvec3(whole.inscatter.pixels[i]), way);
+        change += glm::dot(way, way);
+    }
+    return std::abs(left / change);
+}
 
 // A spot that moves by so much a frame: how much worse with a history than without.
 double trail(Trial& trial) {
@@ -202,6 +229,8 @@ std::vector<StressCase> stress_history() {
                    {0.02, "share of its light that is left", left_when_out}),
         StressCase("light-dims", group, "a light is dimmed", "to", "", {0.98, 0.9, 0.7, 0.3}, Claim::history, {}, lit,
                    {0.1, "share of it that is left or missing four frames later", left_when_dimmed}),
+        StressCase("film", group, "a gobo's image is followed by another", "frames since", "", {4, 2, 1},
+                   Claim::history, {}, first_image, {0.1, "share of the change that is missing", left_of_image}),
         StressCase("moving-light", group, "a spot moves on", "way per frame", "m", {0.002, 0.005, 0.02, 0.1},
                    Claim::history, trail_of_froxels, lit_by_moving,
                    {0.05, "relative RMSE above that without a history", trail}),
