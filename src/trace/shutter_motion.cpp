@@ -93,6 +93,8 @@ bool changes(const Scene& scene, const LightSource& light) {
                 light.outer_cone, light.radius, light.angle);
 }
 
+}
+
 bool changes(const MediumSource& medium) {
     const auto all = [](const auto&... values) { return (values.constant() && ...); };
     if ((medium.recipe && recipe_speed(*medium.recipe) > 0) || moves(medium)) return true;
@@ -101,6 +103,7 @@ bool changes(const MediumSource& medium) {
                 medium.rotate, medium.rotation, medium.height_base, medium.height_falloff);
 }
 
+namespace {
 bool changes(const Background& background) {
     return !background.color.constant() || !background.zenith.constant() || !background.ground.constant() ||
            !background.intensity.constant() || !background.exposure.constant();

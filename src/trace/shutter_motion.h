@@ -3,6 +3,7 @@
 #include "base/math.h"
 
 namespace tyndall {
+struct MediumSource;
 struct Scene;
 struct Shutter;
 
@@ -12,6 +13,9 @@ inline constexpr int moments_of_velocities = 32;                  // of fog that
 // Pixels that the fastest of lights, their beams, surfaces and media travels, the camera's own motion included; what
 // never shows does not count. By a few points of each.
 float motion_on_picture(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter);
+
+// Whether a medium has keys, moving noise or velocities: whether it changes with time, apart from files one a frame.
+bool changes(const MediumSource& medium);
 
 // Whether anything may change while the shutter is open.
 bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter);

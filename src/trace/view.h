@@ -53,7 +53,8 @@ struct View {
     bool background = true;     // whether the background is in the picture ...
     bool covered = true;        // ... and then in alpha
     uint32_t seed = 0;
-    int frame = 0; // varies the jitter from frame to frame
+    int frame = 0;            // varies the jitter from frame to frame
+    bool has_history = false; // whether techniques with a memory look at the frames before
 
     // A local light in the picture, around which the fog's glow changes within a pixel.
     struct Lamp {

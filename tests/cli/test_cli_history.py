@@ -122,6 +122,13 @@ class Left(History):
             self.assertEqual(difference[True], 0, mode)
             self.assertGreater(difference[False], 0, mode)
 
+    def test_fog_that_drifts_is_said_to_trail_behind(self):
+        for mode in REMEMBERING:
+            for wind, history, trails in ((0.05, 3, True), (0, 3, False), (0.05, 0, False)):
+                done = self.succeed("render", self.film(wind=wind), "-o", self.path("out.exr"), "--mode", mode,
+                                    "--samples", 1, "--frames", 2, "--history", history)
+                self.assertEqual("trails behind" in done.stderr + done.stdout, trails, (mode, wind, history))
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -27,10 +27,7 @@ void add_orders(const Scene& scene, const RenderRequest& request, const RenderPl
 
 Limitations limitations_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
                            const Snapshot& snapshot, bool measured) {
-    View view;
-    view.camera = camera_at(scene, find_camera(scene, request.camera), snapshot.seconds);
-    view.shutter = view_of(scene, request, plan.settings, snapshot.frame).shutter;
-    view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    const View view = view_of(scene, request, plan.settings, snapshot.frame);
     Limitations limitations =
         plan.mode->limitations(view, snapshot, plan.choice ? plan.choice->candidate.settings : plan.settings);
     if (measured) add_orders(scene, request, plan, snapshot, limitations);

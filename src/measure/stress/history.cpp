@@ -11,15 +11,20 @@
 
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
+#include "modes/history_limitations.h"
 #include "scene/gobo.h"
 #include "scene/light.h"
 #include "volume/medium.h"
+
+#include <utility>
 
 namespace tyndall {
 namespace {
 constexpr int long_enough = 8; // frames until a history has settled
 // The light of eight frames lies along a way nearly as long as the beam is wide: half of it elsewhere.
 const std::vector<Excuse> trail_of_froxels{{&limitation::moving_light, 0.5}};
+const std::vector<Excuse> trail_of_shadows{{&limitation::moving_shadows, 0.5}};
+const std::vector<Excuse> trail_of_fog{{&limitation::moving_fog, 0.7}};
 const std::vector<Excuse> blur_of_froxels{{&limitation::moving_camera, 0.1}};
 // The eye moves by 0.2 optical depths, and light within a froxel is one value: it may jump by that.
 const std::vector<Excuse> blurred{
@@ -93,14 +98,18 @@ StressScene film(int squares) {
 }
 StressScene first_image(double) { return film(2); }
 
-// The share of the change from one image to the next that is missing so many frames later: noise averages out.
-double left_of_image(Trial& trial) {
+// The share of the change to another picture that is missing so many frames later: noise averages out.
+double left_of_change(Trial& trial, StressScene next) {
     History history;
     settle(trial, trial.scene, history);
-    const StressScene next = film(3);
+    const std::shared_ptr<Scene> surfaces = std::exchange(next.scene, trial.scene.scene); // the history is of one scene
+    next.snapshot.scene = next.scene.get();
     Layers last;
-    for (int i = 0; i < static_cast<int>(trial.value); ++i)
-        last = next_frame(trial, next, trial.scene, long_enough + i, history);
+    for (int i = 0; i < static_cast<int>(trial.value); ++i) {
+        next.snapshot.frame = next.view.frame = long_enough + i;
+        last = trial.render(next, &history);
+    }
+    next.snapshot.frame = next.view.frame = trial.scene.view.frame;
     const Layers first = trial.render(), whole = trial.render(next);
     double left = 0, change = 0;
     for (size_t i = 0; i < whole.inscatter.pixels.size(); ++i) {
@@ -110,6 +119,35 @@ double left_of_image(Trial& trial) {
     }
     return std::abs(left / change);
 }
+double left_of_image(Trial& trial) { return left_of_change(trial, film(3)); }
+
+// A door in the roof, of a file that has keys for its place.
+StressScene behind_door(float x) {
+    std::vector<Mesh> meshes = roof();
+    meshes.push_back(box_of({x, 1.9f, -9}, {x + 0.6f, 1.95f, 9}, -1));
+    StressScene scene = stress_scene({dust()}, {slanting}, camera_from({0, 0, 6}, vec3(0)), meshes);
+    Node door;
+    door.translation.times = {0, 1}, door.translation.values = {vec3(0), vec3(0.4f, 0, 0)};
+    scene.scene->nodes = {door};
+    scene.scene->instances.back().node = 0;
+    return scene;
+}
+StressScene open_door(double) { return behind_door(-0.9f); }
+double left_of_shadow(Trial& trial) { return left_of_change(trial, behind_door(-0.5f)); }
+
+// A puff that drifts by half of itself, of a file that has keys for its place.
+StressScene puff_at(float x) {
+    Medium puff = homogeneous_medium(2, {vec3(x - 0.4f, -0.4f, -0.4f), vec3(x + 0.4f, 0.4f, 0.4f)});
+    puff.name = "puff";
+    StressScene scene = stress_scene({dust(0.05f), puff}, {slanting}, camera_from({0, 0, 6}, vec3(0)));
+    MediumSource source;
+    source.name = puff.name;
+    source.translation.times = {0, 1}, source.translation.values = {vec3(0), vec3(0.4f, 0, 0)};
+    scene.scene->media = {source};
+    return scene;
+}
+StressScene drifting_puff(double) { return puff_at(-0.2f); }
+double left_of_puff(Trial& trial) { return left_of_change(trial, puff_at(0.2f)); }
 
 // A spot that moves by so much a frame: how much worse with a history than without.
 double trail(Trial& trial) {
@@ -231,6 +269,11 @@ std::vector<StressCase> stress_history() {
                    {0.1, "share of it that is left or missing four frames later", left_when_dimmed}),
         StressCase("film", group, "a gobo's image is followed by another", "frames since", "", {4, 2, 1},
                    Claim::history, {}, first_image, {0.1, "share of the change that is missing", left_of_image}),
+        StressCase("door", group, "a door closes", "frames since", "", {4, 2, 1}, Claim::history, trail_of_shadows,
+                   open_door, {0.1, "share of the change that is missing", left_of_shadow}),
+        StressCase("drifting-puff", group, "fog drifts by half of itself", "frames since", "", {4, 2, 1},
+                   Claim::history, trail_of_fog, drifting_puff,
+                   {0.1, "share of the change that is missing", left_of_puff}),
         StressCase("moving-light", group, "a spot moves on", "way per frame", "m", {0.002, 0.005, 0.02, 0.1},
                    Claim::history, trail_of_froxels, lit_by_moving,
                    {0.05, "relative RMSE above that without a history", trail}),

@@ -20,7 +20,6 @@ const std::vector<Excuse> excuses{{&limitation::fog_through_middle},  {&limitati
                                   {&limitation::shutter_moments},     {&limitation::few_steps_for_glow, 2},
                                   {&limitation::coarse_shafts},       {&limitation::grainy_edges, 1.5},
                                   {&limitation::no_shadows, 3},       {&limitation::sun_without_shadows},
-                                  {&limitation::moving_light},        {&limitation::moving_camera},
                                   {&limitation::blurred_filter, 0.5}, {&limitation::sampled_gobo, 0.5}};
 
 // --- lenses --------------------------------------------------------------------------------------------------------

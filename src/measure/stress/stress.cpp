@@ -60,7 +60,9 @@ double excused_by(const Limitation& limitation, const StressCase& stress, double
 
 // What the mode says of the scene before it renders.
 void ask_limitations(const StressCase& stress, const Mode& mode, const StressScene& scene, StressPoint& point) {
-    for (const Limitation& limitation : mode.limitations(scene.view, scene.snapshot, scene.settings)) {
+    View view = scene.view;
+    view.has_history = stress.modes.claims == static_cast<uint16_t>(Claim::history);
+    for (const Limitation& limitation : mode.limitations(view, scene.snapshot, scene.settings)) {
         point.wrong |= limitation.severity == Severity::wrong;
         const double excused = excused_by(limitation, stress, point.allowed);
         if (excused <= point.excused_up_to) continue;

@@ -3,6 +3,7 @@
 #include "modes/area_light_limitations.h"
 #include "modes/cone/cone.h"
 #include "modes/cone/settings.h"
+#include "modes/history_limitations.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/resolution.h"
@@ -11,6 +12,7 @@
 #include "scene/light.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/medium.h"
 
 namespace tyndall {
@@ -64,6 +66,7 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
     add_single_scattering(view, snapshot, limitations);
     if (settings.of<ConeSettings>().resolution != Resolution::full)
         add_no_fog_picture(view, "cone.resolution", limitations);
+    if (view.has_history) add_moving_fog(snapshot, limitations);
     add_mean_environment(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
     add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);

@@ -5,6 +5,7 @@
 #include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"
 #include "modes/froxel/settings.h"
+#include "modes/history_limitations.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/mode.h"
@@ -38,23 +39,6 @@ bool in_fog(const Snapshot& snapshot, vec3 point) {
     return std::ranges::any_of(snapshot.media, [&](const Medium& medium) { return density_at(medium, point) > 0; });
 }
 
-// Whether the scene gives a light keys for where it is or shines to.
-bool is_moving(const Snapshot& snapshot, const Light& light) {
-    const auto moves = [&](const LightSource& source) {
-        return source.name == light.name &&
-               (!source.position.constant() || !source.direction.constant() || is_moving(*snapshot.scene, source.node));
-    };
-    return snapshot.scene && std::ranges::any_of(snapshot.scene->lights, moves);
-}
-
-// Whether it gives the camera keys for where it is.
-bool is_moving(const Snapshot& snapshot, const Camera& camera) {
-    const auto moves = [&](const CameraSource& source) {
-        return source.name == camera.name && (!source.position.constant() || is_moving(*snapshot.scene, source.node));
-    };
-    return snapshot.scene && std::ranges::any_of(snapshot.scene->cameras, moves);
-}
-
 // Whether all of a light is that of the frame, followed along each ray; `exact`: its shadows too.
 struct Followed {
     bool all = false, exact = false;
@@ -83,8 +67,8 @@ void add_glow(const View& view, const Snapshot& snapshot, const Light& light, in
 }
 
 // Of each light: its shadows, its movement and what is next to it.
-void add_light(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings, FroxelSize size,
-               Limitations& limitations) {
+void add_light(const View& view, const Light& light, const Snapshot& snapshot, const FroxelSettings& settings,
+               FroxelSize size, Limitations& limitations) {
     const auto add = [&](Severity severity, const LimitationKind& kind, std::array<double, 2> amounts = {}) {
         limitations.push_back({severity, &kind, Subject::light, light.name, amounts});
     };
@@ -101,7 +85,7 @@ void add_light(const Light& light, const Snapshot& snapshot, const FroxelSetting
     const float across = by_rays.all ? 0 : size.coarse() / std::max(away, size.coarse());
     if (light.filter) add_blurred_filter(light, std::max(filter_point_angle(light), across), limitations);
     if (by_rays.all) return;
-    if (is_moving(snapshot, light)) add(Severity::degraded, limitation::moving_light);
+    if (view.has_history && is_moving(snapshot, light)) add(Severity::degraded, limitation::moving_light);
     if (settings.amortise && !is_distant(light) && in_fog(snapshot, light.position))
         add(Severity::info, limitation::flat_glow, {size.coarse()});
 }
@@ -137,11 +121,15 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
 
     const FroxelSettings& froxel = settings.of<FroxelSettings>();
     const FroxelSize size = middle_froxel(view, snapshot, froxel);
-    if (is_moving(snapshot, view.camera))
-        limitations.push_back({Severity::degraded, &limitation::moving_camera, Subject::camera, view.camera.name});
     for (const Light& light : snapshot.lights) {
-        add_light(light, snapshot, froxel, size, limitations);
+        add_light(view, light, snapshot, froxel, size, limitations);
         add_glow(view, snapshot, light, froxel.tile, limitations);
+    }
+    if (view.has_history) {
+        add_moving_camera(view, snapshot, limitations);
+        add_moving_shadows(snapshot, limitations,
+                           [&](const Light& light) { return !followed(light, snapshot, froxel).exact; });
+        add_moving_fog(snapshot, limitations);
     }
     for (const Medium& medium : thickest_media(snapshot)) add_medium(medium, size, limitations);
     const auto unbounded = [](const Medium& medium) { return std::isinf(medium.world_bounds.high.x); };

@@ -11,10 +11,6 @@ namespace limitation {
 inline constexpr LimitationKind coarse_shafts{"coarse_shafts",
                                               "shafts are no finer than froxels, about {} m wide and {} m deep here: "
                                               "light leaks through thinner walls, and thinner gaps are lost"};
-inline constexpr LimitationKind moving_camera{"moving_camera",
-                                              "moving: --history blurs nearby shafts by a third of a froxel"};
-inline constexpr LimitationKind moving_light{"moving_light",
-                                             "moving: with --history, its light trails behind by a few frames"};
 inline constexpr LimitationKind flat_glow{"flat_glow", "no detail in the glow within {} m of the lamp"};
 inline constexpr LimitationKind deep_froxels{"deep_froxels",
                                              "froxels are up to {} optical depths deep: light is averaged within each"};

@@ -2,6 +2,7 @@
 
 #include "integrate/lights/fire_lamps.h"
 #include "modes/area_light_limitations.h"
+#include "modes/history_limitations.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
 #include "modes/map_shadows.h"
@@ -57,6 +58,7 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     add_mean_albedo(snapshot, limitations);
     if (own.fog_resolution != Resolution::full) add_no_fog_picture(view, "shadow_map.fog_resolution", limitations);
     if (own.blur) add_no_fog_picture(view, "shadow_map.blur", limitations);
+    if (view.has_history) add_moving_shadows(snapshot, limitations), add_moving_fog(snapshot, limitations);
     add_mean_environment(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
     if (settings.terms.emission)

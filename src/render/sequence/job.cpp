@@ -167,7 +167,7 @@ View view_of(const Scene& scene, const RenderRequest& request, const Settings& s
     for (const char* layer : {"surface", "background"}) view.surface_parts |= wants_layer(request, layer);
     for (const char* layer : {"lights", "ambient", "emission", "multiple"})
         view.fog_parts |= wants_layer(request, layer);
-    view.seed = request.seed, view.frame = frame;
+    view.seed = request.seed, view.frame = frame, view.has_history = request.history > 0;
     const Grouping& grouping = request.grouping;
     if (grouping.groups > 0)
         view.batches = grouping.groups, view.sections = grouping.sections, view.leaves = grouping.leaves,
