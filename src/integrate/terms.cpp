@@ -21,9 +21,13 @@ Snapshot with_terms(Snapshot snapshot, const TermSettings& terms) {
     return snapshot;
 }
 
+vec3 mean_ambient(const Snapshot& snapshot) {
+    if (!snapshot.environment) return snapshot.ambient;
+    return snapshot.ambient + snapshot.environment->mean() * snapshot.environment->volume_scale;
+}
+
 Snapshot with_mean_environment(Snapshot snapshot) {
-    if (!snapshot.environment) return snapshot;
-    snapshot.ambient += snapshot.environment->mean() * snapshot.environment->volume_scale;
+    snapshot.ambient = mean_ambient(snapshot);
     return snapshot;
 }
 }

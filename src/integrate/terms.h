@@ -1,5 +1,6 @@
 // Terms of the light in fog that all techniques share, each a switch or a choice of how it is found.
 #pragma once
+#include "base/math.h"
 #include "trace/transmittance/light_transmittance.h"
 
 namespace tyndall {
@@ -18,7 +19,8 @@ struct TermSettings {
 // The snapshot without the terms of fog that are off.
 Snapshot with_terms(Snapshot snapshot, const TermSettings& terms);
 
-// The snapshot with the environment's mean as ambient light besides, for what knows of no other.
+// Ambient light in fog, with the environment's mean; and a snapshot with that alone, for what knows of no other.
+vec3 mean_ambient(const Snapshot& snapshot);
 Snapshot with_mean_environment(Snapshot snapshot);
 
 // How light that nothing looks up before the camera is dimmed: grids before the lights instead.

@@ -1,4 +1,6 @@
 #include "modes/history.h"
+
+#include "integrate/terms.h"
 #include "scene/area_shape.h"
 #include "scene/gobo.h"
 #include "scene/light_filter.h"
@@ -27,10 +29,13 @@ bool is_cut(const View& a, const View& b, const Snapshot& snapshot) {
            glm::dot(from.up, to.up) < cut_cosine || glm::length(to.position - from.position) > far;
 }
 
+bool is_switched(vec3 from, vec3 to) {
+    return !glm::all(glm::greaterThanEqual(glm::min(from, to), switched * glm::max(from, to)));
+}
+
 // Whether a light is another, or was switched.
 bool is_switched(const Light& from, const Light& to) {
-    const vec3 was = from.intensity * from.volume_scale, is = to.intensity * to.volume_scale;
-    return from.kind != to.kind || !glm::all(glm::greaterThanEqual(glm::min(was, is), switched * glm::max(was, is)));
+    return from.kind != to.kind || is_switched(from.intensity * from.volume_scale, to.intensity * to.volume_scale);
 }
 
 bool is_turned(const LightAxes& from, const LightAxes& to) {
@@ -76,9 +81,11 @@ bool any_pair(std::span<const Light> from, std::span<const Light> to, const auto
 
 int follow(History& history, const View& view, const Snapshot& snapshot, const Settings& settings) {
     const std::vector<Light>& lights = snapshot.lights;
+    const vec3 ambient = mean_ambient(snapshot);
     bool goes_on = history.frames > 0 && history.scene == snapshot.scene && history.view.size == view.size &&
                    !is_cut(history.view, view, snapshot) && same(history.settings, settings) &&
-                   history.lights.size() == lights.size() && !any_pair(history.lights, lights, is_switched);
+                   history.lights.size() == lights.size() && !is_switched(history.ambient, ambient) &&
+                   !any_pair(history.lights, lights, [](const Light& a, const Light& b) { return is_switched(a, b); });
     // Froxels clamp what they remember to what they see around: a light may wander through them.
     if (goes_on && !history.froxels)
         goes_on = !any_pair(history.lights, lights, [&](const Light& from, const Light& to) {
@@ -86,7 +93,7 @@ int follow(History& history, const View& view, const Snapshot& snapshot, const S
         });
     if (!goes_on) history = {};
     history.view = view, history.settings = settings;
-    history.scene = snapshot.scene, history.lights = lights;
+    history.scene = snapshot.scene, history.lights = lights, history.ambient = ambient;
     return history.frames++;
 }
 }

@@ -20,6 +20,7 @@ struct History {
     Settings settings;
     const Scene* scene = nullptr;
     std::vector<Light> lights;
+    vec3 ambient{0}; // with the environment's mean
     std::shared_ptr<FroxelHistory> froxels;
     std::shared_ptr<const FogBuffer> picture;
 };

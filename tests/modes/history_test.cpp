@@ -42,6 +42,8 @@ TEST(History, GoesOnWhileThePictureDoes) {
     EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity.y *= 0.4f; })) << "a light of another colour";
     EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity *= 0.6f; })) << "a light dimmed at once";
     EXPECT_FALSE(resets([&] { snapshot.lights[0].intensity *= 0.85f; })) << "a light that flickers";
+    EXPECT_TRUE(resets([&] { snapshot.ambient = vec3(1); })) << "ambient light switched on";
+    EXPECT_FALSE(resets([&] { snapshot.ambient = vec3(0.9f); })) << "less of it";
     view.camera.position = vec3(0), snapshot.lights[0].position = vec3(0, 0, -5);
     EXPECT_TRUE(resets([&] { snapshot.lights[0].position.x += 0.005f; })) << "a light that moves";
     EXPECT_FALSE(resets([&] { snapshot.lights[0].position.x += 0.002f; })) << "a light that hardly moves";
