@@ -1,6 +1,7 @@
 #include "modes/history_limitations.h"
 
 #include "scene/light.h"
+#include "scene/pose.h"
 #include "scene/scene.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/shutter_motion.h"
@@ -15,7 +16,7 @@ bool has_moving_shadows(const Snapshot& snapshot, const Light& light) {
     if (!shadow_casters(light, snapshot)) return false;
     const std::vector<Instance>& instances = snapshot.scene->instances;
     for (size_t i = 0; i < instances.size(); ++i)
-        if (is_moving(*snapshot.scene, instances[i].node) && shadows_light(light, snapshot, static_cast<int>(i)))
+        if (is_moving(*snapshot.scene, instances[i]) && shadows_light(light, snapshot, static_cast<int>(i)))
             return true;
     return false;
 }

@@ -31,6 +31,11 @@ struct Material {
     bool double_sided = false; // only shading normals care; every face casts shadows
 };
 
+// What a mesh's vertices get besides, times a weight; empty = nothing.
+struct MorphTarget {
+    std::vector<vec3> positions, normals;
+};
+
 // One material's triangles. Normals and uvs are empty or one per position.
 struct Mesh {
     std::string name;
@@ -39,5 +44,10 @@ struct Mesh {
     std::vector<vec3> colors; // vertex colours times base_color; empty = white
     std::vector<glm::uvec3> triangles;
     int material = -1; // -1 = white Lambert
+    std::vector<MorphTarget> targets;
+    // Of each position, so many joints of a skin and how much it follows each: weights that add up to 1.
+    size_t influences = 0;
+    std::vector<uint16_t> joints;
+    std::vector<float> joint_weights;
 };
 }

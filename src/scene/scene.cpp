@@ -1,6 +1,8 @@
 // Places of a scene's parts.
 #include "scene/scene.h"
 
+#include "scene/pose.h"
+
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -119,8 +121,12 @@ Box scene_bounds(const Scene& scene, double seconds) {
     std::vector<Box> boxes;
     for (const Mesh& mesh : scene.meshes) boxes.push_back(box_of(mesh));
     Box bounds;
-    for (const Instance& instance : scene.instances)
-        bounds.grow(finite(transform(node_matrix(scene, instance.node, seconds), boxes[instance.mesh])));
+    for (const Instance& instance : scene.instances) {
+        const size_t mesh = static_cast<size_t>(instance.mesh);
+        const Pose pose = pose_of(scene, instance, seconds);
+        const Box box = pose.empty() ? boxes[mesh] : posed_bounds(scene.meshes[mesh], pose);
+        bounds.grow(finite(transform(instance_matrix(scene, instance, seconds), box)));
+    }
     for (const MediumSource& medium : scene.media) {
         const Box local = medium.kind == MediumKind::noise ? medium.recipe->bounds : medium.bounds;
         if (medium.kind == MediumKind::vdb || !is_finite(local.low) || !is_finite(local.high)) continue;

@@ -34,10 +34,18 @@ struct Node {
     dvec3 remainder{0};         // of the place in the file, beyond what floats hold
 };
 
+// Nodes that a mesh follows, and for each the way from the mesh to it where it held the mesh at first.
+struct Skin {
+    std::vector<int> joints;
+    std::vector<mat4> inverse_bind;
+};
+
 struct Instance {
     int node = -1, mesh = -1;
-    bool casts_shadows = true; // else it shadows no light; it is seen and lit as ever
-    bool matte = false;        // holds out what is behind it; it lights and shadows as ever
+    bool casts_shadows = true;                  // else it shadows no light; it is seen and lit as ever
+    bool matte = false;                         // holds out what is behind it; it lights and shadows as ever
+    int skin = -1;                              // whose joints place it instead of its node; -1 = none
+    std::vector<Keyed<float>> target_weights{}; // of the mesh's morph targets
 };
 
 struct CameraSource {
@@ -200,6 +208,7 @@ struct Scene {
     bool own_exposure = false;   // ... where the scene states one
     std::vector<Node> nodes;
     std::vector<Mesh> meshes;
+    std::vector<Skin> skins;
     std::vector<Instance> instances;
     std::vector<Material> materials;
     std::vector<Texture> textures;

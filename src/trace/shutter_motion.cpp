@@ -1,6 +1,7 @@
 #include "trace/shutter_motion.h"
 
 #include "scene/camera.h"
+#include "scene/pose.h"
 #include "scene/scene.h"
 #include "trace/fog.h"
 #include "trace/fog_motion.h"
@@ -33,6 +34,14 @@ void add_corners(const mat4& matrix, const Box& box, Points& points) {
     }
 }
 
+// Vertices all over a mesh in a pose.
+void add_vertices(const mat4& matrix, const Mesh& mesh, const Pose& pose, Points& points) {
+    constexpr size_t enough = 256;
+    const size_t count = mesh.positions.size();
+    for (size_t i = 0; i < std::min(count, enough); ++i)
+        points.push_back(vec3(matrix * vec4(posed_position(mesh, pose, i * count / std::min(count, enough)), 1)));
+}
+
 // The lamp, and points along its beam: of what it lights, and of its shadows.
 void add_light(const Scene& scene, const LightSource& light, double seconds, float extent, Points& points) {
     const mat4 matrix = light.node >= 0 ? node_matrix(scene, light.node, seconds) : mat4(1);
@@ -55,8 +64,15 @@ Points points_at(const Scene& scene, const std::vector<Box>& meshes, double seco
     Points points;
     for (const LightSource& light : scene.lights) add_light(scene, light, seconds, extent, points);
     for (const Instance& instance : scene.instances)
-        if (instance.mesh >= 0)
-            add_corners(node_matrix(scene, instance.node, seconds), meshes[static_cast<size_t>(instance.mesh)], points);
+        if (instance.mesh >= 0) {
+            const size_t mesh = static_cast<size_t>(instance.mesh);
+            const Pose pose = pose_of(scene, instance, seconds);
+            const mat4 matrix = instance_matrix(scene, instance, seconds);
+            if (pose.empty())
+                add_corners(matrix, meshes[mesh], points);
+            else
+                add_vertices(matrix, scene.meshes[mesh], pose, points);
+        }
     for (const MediumSource& medium : scene.media) {
         const mat4 matrix = medium_matrix(medium, seconds);
         points.push_back(vec3(matrix[3])); // of files, whose bounds only they know
@@ -153,7 +169,7 @@ bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter) 
            changes(scene.background) || (scene.environment && changes(*scene.environment)) ||
            std::ranges::any_of(scene.lights, [&](const LightSource& light) { return changes(scene, light); }) ||
            std::ranges::any_of(scene.media, [](const MediumSource& medium) { return changes(medium); }) ||
-           std::ranges::any_of(scene.instances, [&](const Instance& one) { return is_moving(scene, one.node); });
+           std::ranges::any_of(scene.instances, [&](const Instance& one) { return is_moving(scene, one); });
 }
 
 namespace {
@@ -177,7 +193,7 @@ double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool e
         return medium.kind == MediumKind::noise || medium.kind == MediumKind::vdb;
     });
     const double all = count_triangles(scene, [](const Instance&) { return true; });
-    const double moving = count_triangles(scene, [&](const Instance& one) { return is_moving(scene, one.node); });
+    const double moving = count_triangles(scene, [&](const Instance& one) { return is_moving(scene, one); });
     double bytes = (keeps_pictures ? bytes_per_pixel * pixels : 0) + bytes_per_triangle * moving, volumes = 0;
     for (const LightSource& light : scene.lights) {
         const bool anew = everything || changes(scene, light);

@@ -1,9 +1,11 @@
 """Motion blur from a scene file to the picture, its parts, and what is refused."""
 import json
+import math
+import struct
 import unittest
 
 from exr import read_channels
-from program import ProgramTest, lit_scene
+from program import TRIANGLE, ProgramTest, gltf, lit_scene
 
 CAMERA = {"position": [0, 0.6, 3], "target": [0, 0.4, 0]}
 HALF_FRAME = {"open": -0.25, "close": 0.25}
@@ -46,6 +48,43 @@ class ShutterTest(ProgramTest):
         self.assertIn("--time-samples changes nothing", said.stderr)
         blurred = self.succeed("render", self.scene(shutter=HALF_FRAME), "-o", self.path("a.exr"), "--frames", "3", "--time-samples", 8)
         self.assertNotIn("changes nothing", blurred.stderr)
+
+    def test_targets_and_joints_blur_as_nodes_do(self):
+        """A triangle in a beam that goes the same way by its node, by a morph target and by a joint of its skin."""
+        way, times = [0.5, 0, 0], struct.pack("<2f", 0, 0.25)
+        ends = struct.pack("<6f", 0, 0, 0, *way)
+        data = (TRIANGLE + struct.pack("<9f", *3 * way) + times + ends + struct.pack("<2f", 0, 1) + bytes(12) +
+                struct.pack("<12f", *3 * [1, 0, 0, 0]))
+        views = [(0, 36, 3, "VEC3"), (36, 36, 3, "VEC3"), (72, 8, 2, "SCALAR"), (80, 24, 2, "VEC3"), (104, 8, 2, "SCALAR"),
+                 (112, 12, 3, "VEC4"), (124, 48, 3, "VEC4")]
+        whole = {"bufferViews": [{"buffer": 0, "byteOffset": at, "byteLength": size} for at, size, _, _ in views],
+                 "accessors": [{"bufferView": i, "componentType": 5121 if size == 12 else 5126, "count": count, "type": kind}
+                               for i, (_, size, count, kind) in enumerate(views)],
+                 "buffers": [{"uri": "moving.bin", "byteLength": len(data)}]}
+        self.path("moving.bin").write_bytes(data)
+
+        def animation(node, path, output):
+            return [{"channels": [{"sampler": 0, "target": {"node": node, "path": path}}], "samplers": [{"input": 2, "output": output}]}]
+
+        def mesh(attributes=None, **more):
+            return [{"primitives": [{"attributes": {"POSITION": 0, **(attributes or {})}, **more}]}]
+
+        ways = {"node": dict(animations=animation(0, "translation", 3)),
+                "target": dict(meshes=mesh(targets=[{"POSITION": 1}]), animations=animation(0, "weights", 4)),
+                "joint": dict(meshes=mesh({"JOINTS_0": 5, "WEIGHTS_0": 6}), nodes=[{"mesh": 0, "skin": 0}, {}],
+                              scenes=[{"nodes": [0, 1]}], skins=[{"joints": [1]}], animations=animation(1, "translation", 3))}
+        pictures = {}
+        for name, changes in ways.items():
+            self.write(f"{name}.gltf", gltf(**whole, **changes))
+            scene = self.scene(f"{name}.json", HALF_FRAME, gltf=f"{name}.gltf")
+            pictures[name] = self.render(scene, f"{name}.exr", "--time-samples", 8, "--aov", "Z,inscatter")
+            still = self.render(scene, f"{name}_still.exr", "--shutter", "0,0")
+            self.assertNotEqual(still["R"], pictures[name]["R"], f"{name}: it moves")
+        for name in ("target", "joint"):
+            for channel, values in pictures["node"].items():
+                for is_so, wanted in zip(pictures[name][channel], values):
+                    if math.isfinite(wanted):
+                        self.assertAlmostEqual(is_so, wanted, delta=1e-4 * max(abs(wanted), 1e-2), msg=(name, channel))
 
     def test_a_curve_weighs_the_moments(self):
         """Light that comes in late shows more of the flash, which grows."""

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "scene/gltf/gltf.h"
 #include "scene/photometry/light_power.h"
+#include "scene/pose.h"
 
 namespace tyndall {
 namespace {
@@ -15,23 +16,25 @@ constexpr const char* medium_names[] = {"homogeneous", "height", "noise", "vdb"}
 
 struct Totals {
     uint64_t triangles = 0, animated_nodes = 0;
-    float last_key = 0; // seconds
-    Box bounds;         // of the meshes at time 0
+    uint64_t deforming = 0; // instances
+    float last_key = 0;     // seconds
+    Box bounds;             // of the meshes at time 0
 };
 
 Totals totals_of(const Scene& scene) {
     Totals totals;
-    for (const Instance& instance : scene.instances) {
-        const Mesh& mesh = scene.meshes[static_cast<size_t>(instance.mesh)];
-        totals.triangles += mesh.triangles.size();
-        Box box;
-        for (const vec3 position : mesh.positions) box.grow(position);
-        if (!box.empty()) totals.bounds.grow(transform(node_matrix(scene, instance.node, 0), box));
-    }
     const auto last_of = [&](const std::vector<float>& times) {
         if (times.size() >= 2) totals.last_key = std::max(totals.last_key, times.back());
         return times.size() >= 2;
     };
+    for (const Instance& instance : scene.instances) {
+        const Mesh& mesh = scene.meshes[static_cast<size_t>(instance.mesh)];
+        totals.triangles += mesh.triangles.size();
+        const Box box = posed_bounds(mesh, pose_of(scene, instance, 0));
+        if (!box.empty()) totals.bounds.grow(transform(instance_matrix(scene, instance, 0), box));
+        for (const Keyed<float>& weight : instance.target_weights) last_of(weight.times);
+        if (instance.skin >= 0 || !instance.target_weights.empty()) ++totals.deforming;
+    }
     for (const Node& node : scene.nodes)
         if (last_of(node.translation.times) | last_of(node.rotation.times) | last_of(node.scale.times))
             ++totals.animated_nodes;
@@ -103,6 +106,7 @@ std::string content_json(const std::filesystem::path& file, const char* kind, co
                       {"textures", scene.textures.size()},
                       {"bounds", world_box(totals.bounds, scene.origin)},
                       {"animated_nodes", totals.animated_nodes},
+                      {"deforming_instances", totals.deforming},
                       {"animation_seconds", totals.last_key},
                       {"cameras", cameras},
                       {"lights", lights_json(scene)},
@@ -130,7 +134,9 @@ std::string content_text(const Scene& scene) {
     if (!totals.bounds.empty())
         text += "  world         " + place_text(totals.bounds.low, scene.origin) + " to " +
                 place_text(totals.bounds.high, scene.origin) + " m\n";
-    if (totals.animated_nodes)
+    if (totals.deforming)
+        text += "  deforming     " + count_text(totals.deforming, "instance") + ", by skins or morph targets\n";
+    if (totals.last_key > 0)
         text += "  animation     " + count_text(totals.animated_nodes, "node") + ", " +
                 seconds_text(double{totals.last_key}) + "\n";
     for (const CameraSource& camera : scene.cameras)

@@ -26,8 +26,13 @@ Scene scaled(Scene scene, float factor) {
         scale(node.translation, factor);
         if (node.matrix) (*node.matrix)[3] *= vec4(vec3(factor), 1);
     }
-    for (Mesh& mesh : scene.meshes)
+    for (Mesh& mesh : scene.meshes) {
         for (vec3& position : mesh.positions) position *= factor;
+        for (MorphTarget& target : mesh.targets)
+            for (vec3& offset : target.positions) offset *= factor;
+    }
+    for (Skin& skin : scene.skins)
+        for (mat4& matrix : skin.inverse_bind) matrix[3] *= vec4(vec3(factor), 1);
     for (CameraSource& camera : scene.cameras) {
         scale(camera.position, factor), scale(camera.target, factor);
         camera.near *= factor, camera.far *= factor, camera.ortho_height *= factor;

@@ -10,21 +10,23 @@ Interpolation interpolation_named(std::string_view name) {
 }
 
 vec3 element(const float* values, const vec3&) { return {values[0], values[1], values[2]}; }
+float element(const float* values, float) { return values[0]; }
 quat element(const float* values, const quat&) { return {values[3], values[0], values[1], values[2]}; }
 
-// Keys of a sampler. Keys that do not go forward in time are left out.
+// Keys of a sampler, that of `index` where it has so many values for each of them. Keys that do not go forward in time
+// are left out.
 template<class T>
 Keyed<T> keys_of(GltfDocument& document, const tinygltf::AnimationSampler& sampler, int components,
-                 const std::string& pointer) {
+                 const std::string& pointer, size_t many = 1, size_t index = 0) {
     Keyed<T> keys;
     keys.interpolation = interpolation_named(sampler.interpolation);
     const size_t stride = keys.interpolation == Interpolation::cubic ? 3 : 1;
     const std::vector<float> times = gltf_floats(document, sampler.input, 1, pointer + "/input");
     const std::vector<float> values = gltf_floats(document, sampler.output, components, pointer + "/output");
-    if (values.size() != times.size() * stride * components)
+    if (values.size() != times.size() * stride * many * components)
         refuse(document.place(pointer + "/output"), "has " + std::to_string(values.size() / components) +
-                                                        " elements, where " + std::to_string(times.size() * stride) +
-                                                        " are needed");
+                                                        " elements, where " +
+                                                        std::to_string(times.size() * stride * many) + " are needed");
     for (const float value : values)
         if (!std::isfinite(value)) refuse(document.place(pointer + "/output"), "holds a value that is not a number");
 
@@ -37,7 +39,7 @@ Keyed<T> keys_of(GltfDocument& document, const tinygltf::AnimationSampler& sampl
         }
         keys.times.push_back(times[i]);
         for (size_t part = 0; part < stride; ++part)
-            keys.values.push_back(element(&values[(i * stride + part) * components], T()));
+            keys.values.push_back(element(&values[((i * stride + part) * many + index) * components], T()));
     }
     return keys;
 }
@@ -53,11 +55,21 @@ template<class T> void play(GltfDocument& document, const Keyed<T>& keys, Keyed<
     target = keys;
 }
 
+// Of the morph targets of all meshes at a node.
+void play_weights(GltfDocument& document, int node, const tinygltf::AnimationSampler& sampler,
+                  const std::string& pointer) {
+    for (const int instance : document.instances[node]) {
+        std::vector<Keyed<float>>& weights = document.scene->instances[instance].target_weights;
+        for (size_t i = 0; i < weights.size(); ++i)
+            play(document, keys_of<float>(document, sampler, 1, pointer, weights.size(), i), weights[i]);
+    }
+}
+
 void add_channel(GltfDocument& document, const tinygltf::AnimationChannel& channel,
                  const tinygltf::AnimationSampler& sampler, const std::string& pointer) {
-    if (channel.target_path == "weights") return document.count("animations of morph targets are left out");
     const int index = channel.target_node < 0 ? -1 : document.nodes[channel.target_node];
     if (index < 0) return;
+    if (channel.target_path == "weights") return play_weights(document, channel.target_node, sampler, pointer);
     Node& node = document.scene->nodes[index];
     if (node.matrix) return document.count("animations of nodes with a matrix are left out");
     if (channel.target_path == "translation") {

@@ -36,12 +36,13 @@ struct GltfDocument {
 
     // What became of its parts in the scene; -1 = not used.
     std::vector<int> nodes;
-    std::map<int, std::vector<int>> meshes; // mesh index to one scene mesh per drawn primitive
-    std::map<int, int> materials;
+    std::map<int, std::vector<int>> meshes;  // mesh index to one scene mesh per drawn primitive
+    std::vector<std::vector<int>> instances; // of each node
+    std::map<int, int> materials, skins;
     std::map<int, std::shared_ptr<const IesProfile>> profiles;
-    std::map<std::string, int> textures; // by what makes one: image, sampler, transform
-    std::map<std::string, int> counts;   // warnings said once with a number
-    size_t texels = 0, triangles = 0;    // so far
+    std::map<std::string, int> textures;           // by what makes one: image, sampler, transform
+    std::map<std::string, int> counts;             // warnings said once with a number
+    size_t texels = 0, triangles = 0, morphed = 0; // so far; vertices of targets
 
     std::string place(std::string_view pointer) const;
     void warn(std::string_view pointer, std::string_view what);

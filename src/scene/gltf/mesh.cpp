@@ -3,14 +3,26 @@
 #include "base/error.h"
 #include "scene/gltf/document.h"
 
+#include <algorithm>
+#include <map>
+
 namespace tyndall {
 namespace {
-constexpr size_t max_triangles = size_t{1} << 29;
+constexpr size_t max_triangles = size_t{1} << 29, max_morphed = size_t{1} << 27;
+constexpr int max_influence_sets = 8;
 
 // The attributes of a primitive as they stand in the file.
 struct Vertices {
     std::vector<float> positions, normals, uvs, colors;
     size_t color_parts = 3;
+    struct Offsets {
+        std::vector<float> positions, normals;
+    };
+    std::vector<Offsets> targets;
+    struct Influences {
+        std::vector<float> joints, weights; // four of each
+    };
+    std::vector<Influences> influences;
     size_t count() const { return positions.size() / 3; }
 };
 
@@ -18,30 +30,54 @@ vec3 triple(const std::vector<float>& values, size_t i) {
     return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-std::vector<float> attribute(GltfDocument& document, const tinygltf::Primitive& primitive, const std::string& name,
-                             int components, size_t count, const std::string& pointer,
+std::vector<float> attribute(GltfDocument& document, const std::map<std::string, int>& attributes,
+                             const std::string& name, int components, size_t count, const std::string& pointer,
                              Scaling scaling = Scaling::as_declared) {
-    const auto found = primitive.attributes.find(name);
-    if (found == primitive.attributes.end()) return {};
-    const std::string place = pointer + "/attributes/" + name;
+    const auto found = attributes.find(name);
+    if (found == attributes.end()) return {};
+    const std::string place = pointer + "/" + name;
     if (const size_t has = document.model.accessors[found->second].count; count && has != count)
         refuse(document.place(place),
                "has " + std::to_string(has) + " elements, POSITION has " + std::to_string(count));
     return gltf_floats(document, found->second, components, place, scaling);
 }
 
+// Morph targets, and joints and weights of a skin.
+void read_shapes(GltfDocument& document, const tinygltf::Primitive& primitive, const std::string& pointer,
+                 Vertices& vertices) {
+    const size_t count = vertices.count();
+    for (size_t t = 0; t < primitive.targets.size(); ++t) {
+        if ((document.morphed += count) > max_morphed)
+            refuse(document.place(pointer + "/targets"), "the file has too many morph targets");
+        const std::string place = pointer + "/targets/" + std::to_string(t);
+        vertices.targets.push_back({attribute(document, primitive.targets[t], "POSITION", 3, count, place),
+                                    attribute(document, primitive.targets[t], "NORMAL", 3, count, place)});
+        if (vertices.normals.empty()) vertices.targets.back().normals.clear();
+    }
+    for (int set = 0; set < max_influence_sets; ++set) {
+        const std::string number = std::to_string(set), place = pointer + "/attributes";
+        Vertices::Influences here{attribute(document, primitive.attributes, "JOINTS_" + number, 4, count, place),
+                                  attribute(document, primitive.attributes, "WEIGHTS_" + number, 4, count, place)};
+        if (here.joints.empty() || here.weights.empty()) break;
+        vertices.influences.push_back(std::move(here));
+    }
+}
+
 Vertices read_vertices(GltfDocument& document, const tinygltf::Primitive& primitive, int uv_set,
                        const std::string& pointer) {
+    const std::string place = pointer + "/attributes";
     Vertices vertices;
-    vertices.positions = attribute(document, primitive, "POSITION", 3, 0, pointer);
+    vertices.positions = attribute(document, primitive.attributes, "POSITION", 3, 0, place);
     const size_t count = vertices.count();
-    vertices.normals = attribute(document, primitive, "NORMAL", 3, count, pointer);
-    vertices.uvs = attribute(document, primitive, "TEXCOORD_" + std::to_string(uv_set), 2, count, pointer);
+    vertices.normals = attribute(document, primitive.attributes, "NORMAL", 3, count, place);
+    const std::string uvs = "TEXCOORD_" + std::to_string(uv_set);
+    vertices.uvs = attribute(document, primitive.attributes, uvs, 2, count, place);
+    read_shapes(document, primitive, pointer, vertices);
     const auto color = primitive.attributes.find("COLOR_0");
     if (color == primitive.attributes.end()) return vertices;
     vertices.color_parts = document.model.accessors[color->second].type == TINYGLTF_TYPE_VEC4 ? 4 : 3;
-    vertices.colors = attribute(document, primitive, "COLOR_0", static_cast<int>(vertices.color_parts), count, pointer,
-                                Scaling::normalized);
+    vertices.colors = attribute(document, primitive.attributes, "COLOR_0", static_cast<int>(vertices.color_parts),
+                                count, place, Scaling::normalized);
     return vertices;
 }
 
@@ -103,10 +139,39 @@ void mend_normals(Mesh& mesh) {
     }
 }
 
+vec3 finite_triple(const std::vector<float>& values, size_t i) {
+    const vec3 value = triple(values, i);
+    return is_finite(value) ? value : vec3(0);
+}
+
+// What morph targets add to a vertex, and the joints it follows; those whose weights say nothing follow the first.
+void copy_shape(const Vertices& vertices, size_t from, Mesh& mesh) {
+    for (size_t t = 0; t < vertices.targets.size(); ++t) {
+        const auto& [positions, normals] = vertices.targets[t];
+        if (!positions.empty()) mesh.targets[t].positions.push_back(finite_triple(positions, from));
+        if (!normals.empty()) mesh.targets[t].normals.push_back(finite_triple(normals, from));
+    }
+    const size_t first = mesh.joint_weights.size();
+    float sum = 0;
+    for (const auto& [joints, weights] : vertices.influences)
+        for (size_t i = 4 * from; i < 4 * from + 4; ++i) {
+            const bool counts = weights[i] > 0 && std::isfinite(weights[i]);
+            const bool known = joints[i] >= 0 && joints[i] < 65535;
+            mesh.joints.push_back(!counts ? uint16_t{0} : known ? static_cast<uint16_t>(joints[i]) : uint16_t{65535});
+            mesh.joint_weights.push_back(counts ? weights[i] : 0);
+            sum += mesh.joint_weights.back();
+        }
+    if (first == mesh.joint_weights.size()) return;
+    if (!(sum > 0) || !std::isfinite(sum)) mesh.joint_weights[first] = sum = 1;
+    for (size_t i = first; i < mesh.joint_weights.size(); ++i) mesh.joint_weights[i] /= sum;
+}
+
 // Copies the vertices the triangles use, in the order they are first used, and renumbers.
 void compact(const Vertices& vertices, Mesh& mesh) {
     constexpr uint32_t unused = ~0u;
     std::vector<uint32_t> place(vertices.count(), unused);
+    mesh.targets.resize(vertices.targets.size());
+    mesh.influences = 4 * vertices.influences.size();
     const auto finite_or = [](float value, float otherwise) { return std::isfinite(value) ? value : otherwise; };
     for (glm::uvec3& triangle : mesh.triangles)
         for (int corner = 0; corner < 3; ++corner) {
@@ -115,6 +180,7 @@ void compact(const Vertices& vertices, Mesh& mesh) {
                 place[from] = static_cast<uint32_t>(mesh.positions.size());
                 mesh.positions.push_back(triple(vertices.positions, from));
                 if (!vertices.normals.empty()) mesh.normals.push_back(triple(vertices.normals, from));
+                copy_shape(vertices, from, mesh);
                 if (!vertices.uvs.empty())
                     mesh.uvs.push_back(
                         {finite_or(vertices.uvs[2 * from], 0), finite_or(vertices.uvs[2 * from + 1], 0)});
@@ -137,6 +203,9 @@ bool has_data(const GltfDocument& document, const tinygltf::Primitive& primitive
     };
     for (const auto& [name, accessor] : primitive.attributes)
         if (!filled(accessor)) return false;
+    for (const auto& target : primitive.targets)
+        for (const auto& [name, accessor] : target)
+            if (!filled(accessor)) return false;
     return primitive.indices < 0 || filled(primitive.indices);
 }
 
@@ -152,7 +221,6 @@ int scene_mesh(GltfDocument& document, const tinygltf::Primitive& primitive, con
             refuse(document.place(pointer), std::string("the mesh is compressed with ") + compression +
                                                 ", which cannot be read; export without it");
     if (!has_data(document, primitive)) return document.count("primitives whose buffer has no data are left out"), -1;
-    if (!primitive.targets.empty()) document.count("meshes with morph targets are shown in their base shape");
 
     int uv_set = 0;
     Mesh mesh;

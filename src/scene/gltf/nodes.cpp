@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "scene/gltf/document.h"
 
+#include <algorithm>
 #include <set>
 
 namespace tyndall {
@@ -64,11 +65,65 @@ std::vector<int> root_nodes(const tinygltf::Model& model) {
     return roots;
 }
 
-void add_instances(GltfDocument& document, int mesh, int node, const std::string& pointer) {
-    for (const int drawn : gltf_mesh(document, mesh)) {
-        if (document.scene->instances.size() >= max_instances)
+// Index of the scene's skin; -1 where its joints are not all in the scene.
+int gltf_skin(GltfDocument& document, int index) {
+    const auto [known, added] = document.skins.try_emplace(index, -1);
+    if (!added) return known->second;
+    const tinygltf::Skin& source = document.model.skins[index];
+    Skin skin;
+    for (const int joint : source.joints) {
+        if (document.nodes[joint] < 0) return -1;
+        skin.joints.push_back(document.nodes[joint]);
+    }
+    skin.inverse_bind.assign(skin.joints.size(), mat4(1));
+    if (source.inverseBindMatrices >= 0) {
+        const std::string pointer = gltf_pointer("skins", index, "inverseBindMatrices");
+        const std::vector<float> values = gltf_floats(document, source.inverseBindMatrices, 16, pointer);
+        if (values.size() < 16 * skin.joints.size())
+            refuse(document.place(pointer), "has " + std::to_string(values.size() / 16) + " matrices for " +
+                                                std::to_string(skin.joints.size()) + " joints");
+        for (size_t i = 0; i < 16 * skin.joints.size(); ++i) {
+            if (!std::isfinite(values[i])) return -1;
+            skin.inverse_bind[i / 16][static_cast<int>(i / 4 % 4)][static_cast<int>(i % 4)] = values[i];
+        }
+    }
+    document.scene->skins.push_back(std::move(skin));
+    return known->second = static_cast<int>(document.scene->skins.size()) - 1;
+}
+
+// Weights of a mesh's morph targets: the node's, or else the mesh's.
+std::vector<Keyed<float>> target_weights(const tinygltf::Model& model, int node, int mesh, size_t targets) {
+    const std::vector<double>& own = model.nodes[node].weights;
+    const std::vector<double>& weights = own.empty() ? model.meshes[mesh].weights : own;
+    std::vector<Keyed<float>> result(targets, Keyed<float>(0.0f));
+    for (size_t i = 0; i < std::min(targets, weights.size()); ++i)
+        if (std::isfinite(weights[i])) result[i] = static_cast<float>(weights[i]);
+    return result;
+}
+
+// Whether every vertex follows joints that the skin has.
+bool fits(const Mesh& mesh, const Skin& skin) {
+    return mesh.influences > 0 &&
+           std::ranges::all_of(mesh.joints, [&](size_t joint) { return joint < skin.joints.size(); });
+}
+
+// Those of a node of the file, at a node of the scene.
+void add_instances(GltfDocument& document, int index, int node, const std::string& pointer) {
+    const tinygltf::Node& source = document.model.nodes[index];
+    const int skin = source.skin >= 0 ? gltf_skin(document, source.skin) : -1;
+    Scene& scene = *document.scene;
+    for (const int drawn : gltf_mesh(document, source.mesh)) {
+        if (scene.instances.size() >= max_instances)
             refuse(document.place(pointer), "the scene has more than " + std::to_string(max_instances) + " instances");
-        document.scene->instances.push_back({node, drawn});
+        const Mesh& mesh = scene.meshes[drawn];
+        Instance instance{node, drawn};
+        instance.target_weights = target_weights(document.model, index, source.mesh, mesh.targets.size());
+        if (skin >= 0 && fits(mesh, scene.skins[skin]))
+            instance.skin = skin;
+        else if (source.skin >= 0)
+            document.count("skinned meshes without joints that they could follow stand still");
+        document.instances[index].push_back(static_cast<int>(scene.instances.size()));
+        scene.instances.push_back(std::move(instance));
     }
 }
 
@@ -102,31 +157,8 @@ void add_gpu_instances(GltfDocument& document, int index, const tinygltf::Value&
             continue;
         }
         document.scene->nodes.push_back(std::move(node));
-        add_instances(document, document.model.nodes[index].mesh, static_cast<int>(document.scene->nodes.size()) - 1,
-                      pointer);
+        add_instances(document, index, static_cast<int>(document.scene->nodes.size()) - 1, pointer);
     }
-}
-
-// A skinned mesh stands where its skeleton holds it at the start: by its first joint, which is right for the bind pose.
-int skin_node(GltfDocument& document, int index) {
-    const tinygltf::Skin& skin = document.model.skins[document.model.nodes[index].skin];
-    document.count("skinned meshes are shown in their bind pose");
-    if (skin.joints.empty() || document.nodes[skin.joints[0]] < 0) return document.nodes[index];
-    mat4 inverse_bind(1);
-    if (skin.inverseBindMatrices >= 0) {
-        const std::vector<float> values =
-            gltf_floats(document, skin.inverseBindMatrices, 16, gltf_pointer("nodes", index, "skin"));
-        for (int i = 0; i < 16; ++i) inverse_bind[i / 4][i % 4] = values[i];
-    }
-    Node node;
-    node.name = document.scene->nodes[document.nodes[index]].name + " skin";
-    node.matrix = node_matrix(*document.scene, document.nodes[skin.joints[0]], 0) * inverse_bind;
-    for (int i = 0; i < 16; ++i)
-        if (!std::isfinite((*node.matrix)[i / 4][i % 4])) return document.nodes[index];
-    const dmat4 place = world_matrix(*document.scene, document.nodes[skin.joints[0]], 0) * dmat4(inverse_bind);
-    node.remainder = dvec3(place[3]) - dvec3((*node.matrix)[3]);
-    document.scene->nodes.push_back(std::move(node));
-    return static_cast<int>(document.scene->nodes.size()) - 1;
 }
 
 std::string unique_name(const std::string& wanted, std::set<std::string>& taken) {
@@ -193,7 +225,7 @@ int light_index(const tinygltf::Node& node) {
 
 void add_gltf_nodes(GltfDocument& document) {
     const tinygltf::Model& model = document.model;
-    document.nodes.assign(model.nodes.size(), -1);
+    document.nodes.assign(model.nodes.size(), -1), document.instances.resize(model.nodes.size());
     std::vector<std::pair<int, int>> open; // node, parent in the scene
     for (const int root : root_nodes(model)) open.push_back({root, -1});
     std::reverse(open.begin(), open.end());
@@ -213,9 +245,7 @@ void add_gltf_nodes(GltfDocument& document) {
         if (instancing != model.nodes[i].extensions.end())
             add_gpu_instances(document, index, instancing->second.Get("attributes"));
         else
-            add_instances(document, model.nodes[i].mesh,
-                          model.nodes[i].skin >= 0 ? skin_node(document, index) : document.nodes[i],
-                          gltf_pointer("nodes", i));
+            add_instances(document, index, document.nodes[i], gltf_pointer("nodes", i));
     }
 }
 

@@ -1,5 +1,7 @@
 // The list of emitting triangles, and points on them.
 #include "trace/lights/emissive_triangles.h"
+
+#include "scene/pose.h"
 #include "scene/scene.h"
 #include "trace/frame_cache.h"
 #include "trace/occlusion/occluders.h"
@@ -19,11 +21,12 @@ void add_instance(const Snapshot& snapshot, int index, EmissiveTriangles& glow) 
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (!glows(scene, mesh)) return;
     const float brightness = luminance(scene.materials[mesh.material].emission);
-    const mat4 matrix = node_matrix(scene, instance.node, snapshot.seconds);
+    const mat4 matrix = instance_matrix(scene, instance, snapshot.seconds);
+    const Pose pose = pose_of(scene, instance, snapshot.seconds);
     std::vector<int>& places = glow.by_shape[index];
     places.assign(mesh.triangles.size(), -1);
     for (size_t i = 0; i < mesh.triangles.size(); ++i) {
-        const auto corner = [&](uint32_t vertex) { return vec3(matrix * vec4(mesh.positions[vertex], 1)); };
+        const auto corner = [&](uint32_t vertex) { return vec3(matrix * vec4(posed_position(mesh, pose, vertex), 1)); };
         const glm::uvec3 corners = mesh.triangles[i];
         EmissiveTriangle triangle{index, static_cast<int>(i), corner(corners.x), corner(corners.y), corner(corners.z)};
         triangle.area = 0.5f * glm::length(glm::cross(triangle.b - triangle.a, triangle.c - triangle.a));

@@ -34,7 +34,8 @@ uint64_t leave_out_bad_triangles(OccluderGeometry& geometry) {
     return geometry.left_out = triangles.size() - geometry.kept.size();
 }
 
-OccluderGeometry placed_geometry(const Scene& scene, int index, const mat4& matrix) {
+OccluderGeometry placed_geometry(const Scene& scene, int index, const Placement& placement) {
+    const auto& [matrix, pose] = placement;
     const Mesh& mesh = scene.meshes[scene.instances[index].mesh];
     OccluderGeometry geometry;
     geometry.mesh = &mesh;
@@ -46,8 +47,13 @@ OccluderGeometry placed_geometry(const Scene& scene, int index, const mat4& matr
         geometry.emission_texture = usable_texture(scene, geometry.material->emission_texture);
     }
     geometry.positions.reserve(mesh.positions.size() + 1);
-    for (const vec3 position : mesh.positions) geometry.positions.push_back(vec3(matrix * vec4(position, 1)));
+    for (size_t i = 0; i < mesh.positions.size(); ++i) {
+        const vec3 position = pose.empty() ? mesh.positions[i] : posed_position(mesh, pose, i);
+        geometry.positions.push_back(vec3(matrix * vec4(position, 1)));
+    }
     geometry.positions.push_back(vec3(0));
+    for (size_t i = 0; i < mesh.normals.size() && !pose.empty(); ++i)
+        geometry.posed_normals.push_back(posed_normal(mesh, pose, i));
     return geometry;
 }
 
@@ -82,12 +88,12 @@ OccluderSet::~OccluderSet() {
 }
 
 std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::vector<int> instances,
-                                                     std::vector<mat4> matrices) {
+                                                     std::vector<Placement> placements) {
     auto set = std::make_shared<OccluderSet>();
     set->geometries.resize(instances.size());
     std::vector<uint64_t> dropped(instances.size(), 0);
     parallel_for(static_cast<int64_t>(instances.size()), [&](int64_t i) {
-        set->geometries[i] = placed_geometry(scene, instances[i], matrices[i]);
+        set->geometries[i] = placed_geometry(scene, instances[i], placements[i]);
         dropped[i] = leave_out_bad_triangles(set->geometries[i]);
     });
     for (const uint64_t count : dropped) set->dropped += count;
@@ -101,18 +107,18 @@ std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::ve
     if (set->triangles > 0) rtcCommitScene(set->scene);
     check_embree();
     set->instances = std::move(instances);
-    set->matrices = std::move(matrices);
+    set->placements = std::move(placements);
     return set;
 }
 
 const OccluderSet* passing_part(const Scene& scene, const OccluderSet& set) {
     std::call_once(set.sifted, [&] {
         std::vector<int> instances;
-        std::vector<mat4> matrices;
+        std::vector<Placement> placements;
         for (size_t i = 0; i < set.geometries.size(); ++i)
             if (set.geometries[i].passes_light())
-                instances.push_back(set.instances[i]), matrices.push_back(set.matrices[i]);
-        if (!instances.empty()) set.passing = make_occluder_set(scene, std::move(instances), std::move(matrices));
+                instances.push_back(set.instances[i]), placements.push_back(set.placements[i]);
+        if (!instances.empty()) set.passing = make_occluder_set(scene, std::move(instances), std::move(placements));
     });
     return set.passing.get();
 }

@@ -4,23 +4,23 @@
 #include "base/io/file.h"
 #include "scene/scene.h"
 
+#include <span>
+
 namespace tyndall {
 namespace {
 bool has_triangles(const Scene& scene, const Instance& instance) {
     return instance.mesh >= 0 && !scene.meshes[instance.mesh].triangles.empty();
 }
 
-mat4 instance_matrix(const Scene& scene, const Instance& instance, double seconds) {
-    return node_matrix(scene, instance.node, seconds);
-}
-
 std::shared_ptr<const OccluderSet> shared_or_made(const Scene& scene, std::vector<int> instances, double seconds,
                                                   const std::shared_ptr<const OccluderSet>& previous) {
-    std::vector<mat4> matrices;
-    for (const int i : instances) matrices.push_back(instance_matrix(scene, scene.instances[i], seconds));
-    if (previous && previous->instances == instances && previous->matrices == matrices) return previous;
+    std::vector<Placement> placements;
+    for (const int i : instances)
+        placements.push_back(
+            {instance_matrix(scene, scene.instances[i], seconds), pose_of(scene, scene.instances[i], seconds)});
+    if (previous && previous->instances == instances && previous->placements == placements) return previous;
     if (instances.empty()) return std::make_shared<OccluderSet>();
-    return make_occluder_set(scene, std::move(instances), std::move(matrices));
+    return make_occluder_set(scene, std::move(instances), std::move(placements));
 }
 }
 
@@ -32,7 +32,7 @@ std::shared_ptr<const Occluders> Occluders::make(const Scene& scene, double seco
     std::vector<int> still, moving;
     for (int i = 0; i < static_cast<int>(scene.instances.size()); ++i)
         if (has_triangles(scene, scene.instances[i]) && (!only || (*only)[static_cast<size_t>(i)]))
-            (is_moving(scene, scene.instances[i].node) ? moving : still).push_back(i);
+            (is_moving(scene, scene.instances[i]) ? moving : still).push_back(i);
     const Impl* before = previous && previous->impl_->scene == &scene ? previous->impl_.get() : nullptr;
     std::shared_ptr<Occluders> result(new Occluders);
     result->impl_->scene = &scene;
@@ -54,7 +54,11 @@ std::string Occluders::content() const {
     const auto add = [&](const auto& values) {
         bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
     };
-    for (const OccluderSet* set : {impl_->still.get(), impl_->moving.get()}) add(set->instances), add(set->matrices);
+    for (const OccluderSet* set : {impl_->still.get(), impl_->moving.get()}) {
+        add(set->instances);
+        for (const Placement& one : set->placements)
+            add(std::span(&one.matrix, 1)), add(one.pose.targets), add(one.pose.joints);
+    }
     return "surfaces " + content_hash(bytes);
 }
 
@@ -97,7 +101,7 @@ SurfacePoint Occluders::surface(const Ray& ray, const Hits& hits, int lane) cons
     if (glm::dot(point.face_normal, ray.direction) > 0) point.face_normal = -point.face_normal;
     point.normal = point.face_normal;
     if (!mesh.normals.empty()) {
-        const vec3 smooth = geometry.normal_to_world * interpolated(mesh.normals, corners, u, v);
+        const vec3 smooth = geometry.normal_to_world * interpolated(geometry.normals(), corners, u, v);
         const float length = glm::length(smooth);
         if (length > 0 && std::isfinite(length)) point.normal = smooth / length;
         if (glm::dot(point.normal, point.face_normal) < 0) point.normal = -point.normal;

@@ -1,6 +1,7 @@
 // Inside the occluders: Embree's device, and one set of triangles with its acceleration structure.
 #pragma once
 #include "scene/mesh.h"
+#include "scene/pose.h"
 #include "trace/occlusion/embree.h"
 #include "trace/occlusion/occluders.h"
 
@@ -28,6 +29,7 @@ struct OccluderGeometry {
     int instance = 0;
     mat3 normal_to_world{1};
     std::vector<vec3> positions;     // one more than the mesh has: Embree loads 16 bytes at a time
+    std::vector<vec3> posed_normals; // of a mesh in a pose; else its own are used
     std::vector<glm::uvec3> kept;    // triangles when some were left out; else the mesh's own are used
     std::vector<uint32_t> originals; // their indices in the mesh; empty when all were kept
     uint64_t left_out = 0;
@@ -37,6 +39,7 @@ struct OccluderGeometry {
     bool blends() const { return material && material->alpha_mode == AlphaMode::blend; }
     // Whether light may get through: masks, and sheets that are not opaque all over.
     bool passes_light() const { return masks() || (blends() && (base_texture || material->alpha < 1)); }
+    const std::vector<vec3>& normals() const { return posed_normals.empty() ? mesh->normals : posed_normals; }
     // What Embree has: all triangles of the mesh, or those that were kept.
     const std::vector<glm::uvec3>& traced() const { return left_out ? kept : mesh->triangles; }
     // Opacity at a point of a triangle of the mesh: 1 for opaque materials, 0 or 1 for masks.
@@ -48,11 +51,19 @@ template<class T> T interpolated(const std::vector<T>& values, glm::uvec3 corner
     return (1 - u - v) * values[corners.x] + u * values[corners.y] + v * values[corners.z];
 }
 
+// Where an instance stands, and in which shape.
+struct Placement {
+    mat4 matrix{1};
+    Pose pose;
+
+    bool operator==(const Placement&) const = default;
+};
+
 struct OccluderSet {
     RTCScene scene = nullptr;                 // null = no triangles
     std::vector<OccluderGeometry> geometries; // Embree's geometry ids
     std::vector<int> instances;               // what it was made of ...
-    std::vector<mat4> matrices;               // ... and where each stood
+    std::vector<Placement> placements;        // ... and where each stood
     Box bounds;
     uint64_t triangles = 0, dropped = 0;
     bool has_alpha = false;
@@ -81,7 +92,7 @@ struct Occluders::Impl {
 
 // Triangles of some instances at their places, ready to trace. Throws Error.
 std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::vector<int> instances,
-                                                     std::vector<mat4> matrices);
+                                                     std::vector<Placement> placements);
 
 // Those of a set's instances that light may get through; null = none. Throws Error.
 const OccluderSet* passing_part(const Scene& scene, const OccluderSet& set);

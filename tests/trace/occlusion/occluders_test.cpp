@@ -333,5 +333,28 @@ TEST(Occluders, InstructionSetIsFixedOnceUsed) {
     EXPECT_THROW(set_embree_isa("avx512"), Error);
     EXPECT_THROW(set_embree_isa("sse9"), Error);
 }
+
+TEST(Occluders, MeshesThatChangeTheirShapeAreBuiltAnew) {
+    Scene scene;
+    Mesh mesh = quad(vec3(-1, -1, -2), vec3(2, 0, 0), vec3(0, 2, 0));
+    mesh.normals.assign(4, vec3(0, 0, 1));
+    mesh.targets.push_back({std::vector<vec3>(4, vec3(0, 0, -4)), std::vector<vec3>(4, vec3(1, 0, 0))});
+    add_mesh(scene, mesh);
+    scene.instances[0].target_weights = {from_to(0.0f, 1.0f)};
+    const auto start = Occluders::make(scene, 0, nullptr), middle = Occluders::make(scene, 0.5, start.get());
+    EXPECT_FALSE(middle->shares_with(*start));
+    EXPECT_NE(middle->content(), start->content());
+    EXPECT_TRUE(Occluders::make(scene, 0.5, middle.get())->shares_with(*middle));
+
+    const Ray ray{vec3(0.25f, 0.5f, 0), vec3(0, 0, -1)};
+    Hits hits;
+    start->closest({&ray, 1}, 0, hits);
+    EXPECT_FLOAT_EQ(hits.t[0], 2);
+    EXPECT_EQ(start->surface(ray, hits, 0).normal, vec3(0, 0, 1));
+    middle->closest({&ray, 1}, 0, hits);
+    EXPECT_FLOAT_EQ(hits.t[0], 4);
+    EXPECT_LT(glm::distance(middle->surface(ray, hits, 0).normal, glm::normalize(vec3(0.5f, 0, 1))), 1e-6f);
+    EXPECT_EQ(middle->bounds().low.z, -4);
+}
 }
 }
