@@ -46,7 +46,7 @@ struct Mesh {
     int material = -1; // -1 = white Lambert
     std::vector<MorphTarget> targets;
     // Of each position, so many joints of a skin and how much it follows each: weights that add up to 1.
-    size_t influences = 0;
+    size_t influences = 0, joint_count = 0; // joint_count: of the skin, at least
     std::vector<uint16_t> joints;
     std::vector<float> joint_weights;
 };

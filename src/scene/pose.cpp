@@ -32,14 +32,16 @@ Pose pose_of(const Scene& scene, const Instance& instance, double seconds) {
 vec3 posed_position(const Mesh& mesh, const Pose& pose, size_t vertex) {
     vec3 position = mesh.positions[vertex];
     for (size_t t = 0; t < pose.targets.size(); ++t)
-        if (!mesh.targets[t].positions.empty()) position += pose.targets[t] * mesh.targets[t].positions[vertex];
+        if (pose.targets[t] != 0 && !mesh.targets[t].positions.empty())
+            position += pose.targets[t] * mesh.targets[t].positions[vertex];
     return pose.joints.empty() ? position : vec3(skin_matrix(mesh, pose, vertex) * vec4(position, 1));
 }
 
 vec3 posed_normal(const Mesh& mesh, const Pose& pose, size_t vertex) {
     vec3 normal = mesh.normals[vertex];
     for (size_t t = 0; t < pose.targets.size(); ++t)
-        if (!mesh.targets[t].normals.empty()) normal += pose.targets[t] * mesh.targets[t].normals[vertex];
+        if (pose.targets[t] != 0 && !mesh.targets[t].normals.empty())
+            normal += pose.targets[t] * mesh.targets[t].normals[vertex];
     if (pose.joints.empty()) return normal;
     return glm::transpose(glm::inverse(mat3(skin_matrix(mesh, pose, vertex)))) * normal;
 }

@@ -73,18 +73,20 @@ class ShutterTest(ProgramTest):
                 "target": dict(meshes=mesh(targets=[{"POSITION": 1}]), animations=animation(0, "weights", 4)),
                 "joint": dict(meshes=mesh({"JOINTS_0": 5, "WEIGHTS_0": 6}), nodes=[{"mesh": 0, "skin": 0}, {}],
                               scenes=[{"nodes": [0, 1]}], skins=[{"joints": [1]}], animations=animation(1, "translation", 3))}
-        pictures = {}
+        scenes = {}
         for name, changes in ways.items():
             self.write(f"{name}.gltf", gltf(**whole, **changes))
-            scene = self.scene(f"{name}.json", HALF_FRAME, gltf=f"{name}.gltf")
-            pictures[name] = self.render(scene, f"{name}.exr", "--time-samples", 8, "--aov", "Z,inscatter")
-            still = self.render(scene, f"{name}_still.exr", "--shutter", "0,0")
-            self.assertNotEqual(still["R"], pictures[name]["R"], f"{name}: it moves")
-        for name in ("target", "joint"):
-            for channel, values in pictures["node"].items():
-                for is_so, wanted in zip(pictures[name][channel], values):
-                    if math.isfinite(wanted):
-                        self.assertAlmostEqual(is_so, wanted, delta=1e-4 * max(abs(wanted), 1e-2), msg=(name, channel))
+            scenes[name] = self.scene(f"{name}.json", HALF_FRAME, gltf=f"{name}.gltf")
+        for mode in ("march", "froxel", "shadow-map", "shadow-volume", "path"):
+            pictures = {name: self.render(scene, f"{name}.exr", "--mode", mode, "--time-samples", 8, "--aov", "Z,inscatter")
+                        for name, scene in scenes.items()}
+            still = self.render(scenes["node"], "still.exr", "--mode", mode, "--shutter", "0,0")
+            self.assertNotEqual(still["R"], pictures["node"]["R"], "it moves")
+            for name, picture in pictures.items():
+                for channel, values in pictures["node"].items():
+                    for is_so, wanted in zip(picture[channel], values):
+                        if math.isfinite(wanted):
+                            self.assertAlmostEqual(is_so, wanted, delta=1e-4 * max(abs(wanted), 1e-2), msg=(mode, name, channel))
 
     def test_a_curve_weighs_the_moments(self):
         """Light that comes in late shows more of the flash, which grows."""

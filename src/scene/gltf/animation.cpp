@@ -13,33 +13,48 @@ vec3 element(const float* values, const vec3&) { return {values[0], values[1], v
 float element(const float* values, float) { return values[0]; }
 quat element(const float* values, const quat&) { return {values[3], values[0], values[1], values[2]}; }
 
-// Keys of a sampler, that of `index` where it has so many values for each of them. Keys that do not go forward in time
-// are left out.
-template<class T>
-Keyed<T> keys_of(GltfDocument& document, const tinygltf::AnimationSampler& sampler, int components,
-                 const std::string& pointer, size_t many = 1, size_t index = 0) {
-    Keyed<T> keys;
-    keys.interpolation = interpolation_named(sampler.interpolation);
-    const size_t stride = keys.interpolation == Interpolation::cubic ? 3 : 1;
-    const std::vector<float> times = gltf_floats(document, sampler.input, 1, pointer + "/input");
-    const std::vector<float> values = gltf_floats(document, sampler.output, components, pointer + "/output");
-    if (values.size() != times.size() * stride * many * components)
-        refuse(document.place(pointer + "/output"), "has " + std::to_string(values.size() / components) +
-                                                        " elements, where " +
-                                                        std::to_string(times.size() * stride * many) + " are needed");
-    for (const float value : values)
+// What a sampler holds: times, and `many` values of so many components for each, three times as many for splines.
+struct Samples {
+    Interpolation interpolation;
+    std::vector<float> times, values;
+    size_t stride, many, components;
+};
+Samples samples_of(GltfDocument& document, const tinygltf::AnimationSampler& sampler, int components, size_t many,
+                   const std::string& pointer) {
+    const Interpolation interpolation = interpolation_named(sampler.interpolation);
+    Samples samples{interpolation,
+                    gltf_floats(document, sampler.input, 1, pointer + "/input"),
+                    gltf_floats(document, sampler.output, components, pointer + "/output"),
+                    interpolation == Interpolation::cubic ? size_t{3} : size_t{1},
+                    many,
+                    static_cast<size_t>(components)};
+    const size_t has = samples.values.size() / samples.components,
+                 needed = samples.times.size() * samples.stride * many;
+    if (has != needed)
+        refuse(document.place(pointer + "/output"),
+               "has " + std::to_string(has) + " elements, where " + std::to_string(needed) + " are needed");
+    for (const float value : samples.values)
         if (!std::isfinite(value)) refuse(document.place(pointer + "/output"), "holds a value that is not a number");
+    for (const float time : samples.times)
+        if (!std::isfinite(time)) refuse(document.place(pointer + "/input"), "holds a time that is not a number");
+    return samples;
+}
 
+// The keys of one of the values. Keys that do not go forward in time are left out.
+template<class T> Keyed<T> keys_of(GltfDocument& document, const Samples& samples, size_t index = 0) {
+    Keyed<T> keys;
+    keys.interpolation = samples.interpolation;
     keys.values.clear();
-    for (size_t i = 0; i < times.size(); ++i) {
-        if (!std::isfinite(times[i])) refuse(document.place(pointer + "/input"), "holds a time that is not a number");
-        if (!keys.times.empty() && times[i] <= keys.times.back()) {
+    for (size_t i = 0; i < samples.times.size(); ++i) {
+        if (!keys.times.empty() && samples.times[i] <= keys.times.back()) {
             document.count("keys that do not go forward in time are left out");
             continue;
         }
-        keys.times.push_back(times[i]);
-        for (size_t part = 0; part < stride; ++part)
-            keys.values.push_back(element(&values[((i * stride + part) * many + index) * components], T()));
+        keys.times.push_back(samples.times[i]);
+        for (size_t part = 0; part < samples.stride; ++part) {
+            const size_t place = (i * samples.stride + part) * samples.many + index;
+            keys.values.push_back(element(&samples.values[place * samples.components], T()));
+        }
     }
     return keys;
 }
@@ -60,8 +75,9 @@ void play_weights(GltfDocument& document, int node, const tinygltf::AnimationSam
                   const std::string& pointer) {
     for (const int instance : document.instances[node]) {
         std::vector<Keyed<float>>& weights = document.scene->instances[instance].target_weights;
-        for (size_t i = 0; i < weights.size(); ++i)
-            play(document, keys_of<float>(document, sampler, 1, pointer, weights.size(), i), weights[i]);
+        if (weights.empty()) continue;
+        const Samples samples = samples_of(document, sampler, 1, weights.size(), pointer);
+        for (size_t i = 0; i < weights.size(); ++i) play(document, keys_of<float>(document, samples, i), weights[i]);
     }
 }
 
@@ -73,12 +89,12 @@ void add_channel(GltfDocument& document, const tinygltf::AnimationChannel& chann
     Node& node = document.scene->nodes[index];
     if (node.matrix) return document.count("animations of nodes with a matrix are left out");
     if (channel.target_path == "translation") {
-        play(document, keys_of<vec3>(document, sampler, 3, pointer), node.translation);
+        play(document, keys_of<vec3>(document, samples_of(document, sampler, 3, 1, pointer)), node.translation);
         node.remainder = dvec3(0);
     } else if (channel.target_path == "scale")
-        play(document, keys_of<vec3>(document, sampler, 3, pointer), node.scale);
+        play(document, keys_of<vec3>(document, samples_of(document, sampler, 3, 1, pointer)), node.scale);
     else if (channel.target_path == "rotation") {
-        Keyed<quat> keys = keys_of<quat>(document, sampler, 4, pointer);
+        Keyed<quat> keys = keys_of<quat>(document, samples_of(document, sampler, 4, 1, pointer));
         make_unit(keys);
         play(document, keys, node.rotation);
     } else {

@@ -40,9 +40,12 @@ struct GltfDocument {
     std::vector<std::vector<int>> instances; // of each node
     std::map<int, int> materials, skins;
     std::map<int, std::shared_ptr<const IesProfile>> profiles;
-    std::map<std::string, int> textures;           // by what makes one: image, sampler, transform
-    std::map<std::string, int> counts;             // warnings said once with a number
-    size_t texels = 0, triangles = 0, morphed = 0; // so far; vertices of targets
+    std::map<std::string, int> textures; // by what makes one: image, sampler, transform
+    std::map<std::string, int> counts;   // warnings said once with a number
+    // So far:
+    size_t texels = 0, triangles = 0;
+    size_t morphed = 0; // vertices of morph targets
+    size_t posed = 0;   // joints and morph targets of instances
 
     std::string place(std::string_view pointer) const;
     void warn(std::string_view pointer, std::string_view what);

@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t max_triangles = size_t{1} << 29, max_morphed = size_t{1} << 27;
+constexpr size_t max_triangles = size_t{1} << 29, max_morphed = size_t{1} << 25;
 constexpr int max_influence_sets = 8;
 
 // The attributes of a primitive as they stand in the file.
@@ -159,6 +159,7 @@ void copy_shape(const Vertices& vertices, size_t from, Mesh& mesh) {
             const bool known = joints[i] >= 0 && joints[i] < 65535;
             mesh.joints.push_back(!counts ? uint16_t{0} : known ? static_cast<uint16_t>(joints[i]) : uint16_t{65535});
             mesh.joint_weights.push_back(counts ? weights[i] : 0);
+            mesh.joint_count = std::max<size_t>(mesh.joint_count, mesh.joints.back() + size_t{1});
             sum += mesh.joint_weights.back();
         }
     if (first == mesh.joint_weights.size()) return;

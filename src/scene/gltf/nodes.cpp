@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t max_instances = 1000000;
+constexpr size_t max_instances = 1000000, max_posed = 4000000;
 
 vec3 triple(const std::vector<double>& values, vec3 otherwise) {
     return values.size() == 3 ? vec3(values[0], values[1], values[2]) : otherwise;
@@ -101,12 +101,6 @@ std::vector<Keyed<float>> target_weights(const tinygltf::Model& model, int node,
     return result;
 }
 
-// Whether every vertex follows joints that the skin has.
-bool fits(const Mesh& mesh, const Skin& skin) {
-    return mesh.influences > 0 &&
-           std::ranges::all_of(mesh.joints, [&](size_t joint) { return joint < skin.joints.size(); });
-}
-
 // Those of a node of the file, at a node of the scene.
 void add_instances(GltfDocument& document, int index, int node, const std::string& pointer) {
     const tinygltf::Node& source = document.model.nodes[index];
@@ -116,9 +110,13 @@ void add_instances(GltfDocument& document, int index, int node, const std::strin
         if (scene.instances.size() >= max_instances)
             refuse(document.place(pointer), "the scene has more than " + std::to_string(max_instances) + " instances");
         const Mesh& mesh = scene.meshes[drawn];
+        const size_t joints = skin >= 0 ? scene.skins[skin].joints.size() : 0;
+        if ((document.posed += joints + mesh.targets.size()) > max_posed)
+            refuse(document.place(pointer),
+                   "the scene's instances have more than " + std::to_string(max_posed) + " joints and morph targets");
         Instance instance{node, drawn};
         instance.target_weights = target_weights(document.model, index, source.mesh, mesh.targets.size());
-        if (skin >= 0 && fits(mesh, scene.skins[skin]))
+        if (mesh.influences > 0 && mesh.joint_count <= joints)
             instance.skin = skin;
         else if (source.skin >= 0)
             document.count("skinned meshes without joints that they could follow stand still");
