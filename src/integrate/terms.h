@@ -19,7 +19,7 @@ struct TermSettings {
 // The snapshot without the terms of fog that are off.
 Snapshot with_terms(Snapshot snapshot, const TermSettings& terms);
 
-// Ambient light in fog, with the environment's mean; and a snapshot with that alone, for what knows of no other.
+// Ambient light in fog, the environment's mean included; and a snapshot with that, for what knows no environment.
 vec3 mean_ambient(const Snapshot& snapshot);
 Snapshot with_mean_environment(Snapshot snapshot);
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 
 namespace tyndall {
 namespace {
@@ -71,12 +70,6 @@ bool leaves_trail(const Light& from, const Light& to, vec3 eye) {
     return (to.kind == LightKind::spot && cones > moved_on) || shines_otherwise(from.filter.get(), to.filter.get()) ||
            is_reshaped(from.area.get(), to.area.get());
 }
-
-bool any_pair(std::span<const Light> from, std::span<const Light> to, const auto& holds) {
-    for (size_t i = 0; i < from.size(); ++i)
-        if (holds(from[i], to[i])) return true;
-    return false;
-}
 }
 
 int follow(History& history, const View& view, const Snapshot& snapshot, const Settings& settings) {
@@ -84,12 +77,13 @@ int follow(History& history, const View& view, const Snapshot& snapshot, const S
     const vec3 ambient = mean_ambient(snapshot);
     bool goes_on = history.frames > 0 && history.scene == snapshot.scene && history.view.size == view.size &&
                    !is_cut(history.view, view, snapshot) && same(history.settings, settings) &&
-                   history.lights.size() == lights.size() && !is_switched(history.ambient, ambient) &&
-                   !any_pair(history.lights, lights, [](const Light& a, const Light& b) { return is_switched(a, b); });
+                   !is_switched(history.ambient, ambient) &&
+                   std::ranges::equal(history.lights, lights,
+                                      [](const Light& from, const Light& to) { return !is_switched(from, to); });
     // Froxels clamp what they remember to what they see around: a light may wander through them.
     if (goes_on && !history.froxels)
-        goes_on = !any_pair(history.lights, lights, [&](const Light& from, const Light& to) {
-            return leaves_trail(from, to, view.camera.position);
+        goes_on = std::ranges::equal(history.lights, lights, [&](const Light& from, const Light& to) {
+            return !leaves_trail(from, to, view.camera.position);
         });
     if (!goes_on) history = {};
     history.view = view, history.settings = settings;

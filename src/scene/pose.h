@@ -20,14 +20,14 @@ struct Pose {
 };
 Pose pose_of(const Scene& scene, const Instance& instance, double seconds);
 
-// A vertex in that pose: in the mesh's space, or where the scene's origin counts from if joints take it there. The
-// normal is not unit; the mesh must have normals.
+// A vertex in that pose: in the mesh's space, or in the world, counted from the scene's origin, where it has joints.
+// Normals have any length; the mesh must have some.
 vec3 posed_position(const Mesh& mesh, const Pose& pose, size_t vertex);
 vec3 posed_normal(const Mesh& mesh, const Pose& pose, size_t vertex);
 Box posed_bounds(const Mesh& mesh, const Pose& pose);
 
-// From the space of its posed positions, counted from the scene's origin: of its node, or what joints took there
-// already.
+// From the space of its posed positions to the world, counted from the scene's origin: its node's matrix, or the
+// identity where joints took them there.
 mat4 instance_matrix(const Scene& scene, const Instance& instance, double seconds);
 
 // Whether the scene gives keys to where an instance is or to its shape.

@@ -53,12 +53,6 @@ void add_light(const Scene& scene, const LightSource& light, double seconds, flo
         points.push_back(aimed ? position + share * reach / length * along : position);
 }
 
-Box box_of(const Mesh& mesh) {
-    Box box;
-    for (const vec3& position : mesh.positions) box.grow(position);
-    return box;
-}
-
 // What moves on the picture, always the same points in the same order.
 Points points_at(const Scene& scene, const std::vector<Box>& meshes, double seconds, float extent) {
     Points points;
@@ -137,7 +131,7 @@ double seconds_of(const Scene& scene, int frame, const Shutter& shutter, float s
 
 float motion_on_picture(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter) {
     std::vector<Box> meshes;
-    for (const Mesh& mesh : scene.meshes) meshes.push_back(box_of(mesh));
+    for (const Mesh& mesh : scene.meshes) meshes.push_back(posed_bounds(mesh, {}));
     const float extent = extent_of(scene, seconds_of(scene, frame, shutter, 0.5f));
     std::vector<float> travelled;
     std::vector<std::optional<vec2>> before;

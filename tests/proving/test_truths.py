@@ -37,7 +37,7 @@ class Known:
         renderer.left -= took
         if renderer.left < 0:
             raise truths.TooLong()
-        return {"surface": self.surface[place] + self.noise[place] * noise[0] + (off if recipe not in ("beams", "bare") else 0.01),
+        return {"surface": self.surface[place] + self.noise[place] * noise[0] + (0.01 if recipe in truths.FOR_SURFACES else off),
                 "fog": self.fog[place] + off + (0.1 + off) * noise[1]}, took
 
     def find(self, seconds=1e3):

@@ -25,8 +25,8 @@ BEAMS, BARE, EXACT = "beams", "bare", "exact"
 COARSE = ("march.step_depth=0.25", "march.step_voxels=8", "march.step_share=0.036", "march.min_transmittance=0.001",
           "terms.light=grid", "terms.light_resolution=65")
 RECIPES = {  # from quick to exact; what each departs from the reference in
-    BEAMS: ("terms.light=grid", "terms.light_resolution=65"),  # for surfaces alone: light in fog is another technique's
-    BARE: (*COARSE, "march.visibility=intervals", "march.near_light=10", "march.nodes=1"),  # for surfaces alone, too
+    BEAMS: ("terms.light=grid", "terms.light_resolution=65"),
+    BARE: (*COARSE, "march.visibility=intervals", "march.near_light=10", "march.nodes=1"),
     "coarse": (*COARSE, "march.visibility=intervals", "march.near_light=0.5", "march.nodes=4"),
     "fine": ("march.visibility=intervals", "march.step_depth=0.1", "march.step_voxels=2", "march.step_share=0.0104",
              "march.near_light=0.25", "march.min_transmittance=0.0001", "march.nodes=6", "terms.light=grid",
@@ -34,6 +34,7 @@ RECIPES = {  # from quick to exact; what each departs from the reference in
     "grid": ("terms.light=grid",),
     EXACT: ()}
 MODES = {BEAMS: "billboard"}  # others march
+FOR_SURFACES = (BEAMS, BARE)  # whose light in fog is of no use
 
 
 class TooLong(Exception):
@@ -70,7 +71,8 @@ class Renderer:
 
     def made(self, recipe, options):
         run = render(self.program, self.scene, self.folder / "truth.exr",
-                     ["--mode", MODES.get(recipe, "march"), "--frames", self.frame, *options], THREADS, max(10 * self.left, 60), max(self.left, 1))
+                     ["--mode", MODES.get(recipe, "march"), "--frames", self.frame, *options],
+                     THREADS, max(10 * self.left, 60), max(self.left, 1))
         self.left -= run.processor
         if self.left < 0 or run.layers is None:
             raise TooLong(run.said)
@@ -179,9 +181,8 @@ def chains_of(renderer, size, wanted):
         counts = (roots * np.sqrt(times)).sum() * roots / np.sqrt(times) / (RUNS * wanted ** 2)
         return RUNS * (np.maximum(counts, FEWEST_DIFFERENCES) * times).sum()
 
-    surfaces_alone = [BEAMS, BARE]
-    quicker = [recipe for recipe in made if recipe not in (*surfaces_alone, EXACT)]
-    chains = {"surface": [(recipe, EXACT) for recipe in surfaces_alone],
+    quicker = [recipe for recipe in made if recipe not in (*FOR_SURFACES, EXACT)]
+    chains = {"surface": [(recipe, EXACT) for recipe in FOR_SURFACES],
               "fog": [(*some, EXACT) for count in range(len(quicker) + 1) for some in itertools.combinations(quicker, count)]}
     return {part: min(of_part, key=lambda chain: cost(part, chain)) for part, of_part in chains.items()}, start
 
@@ -223,9 +224,9 @@ def aim_of(costs, left, hope):
 
 def find_truth(program, scene, size, frame, folder, wanted, seconds, hope=HOPE):
     """The truth with an error that is surely at most one of those wanted, the smallest there is processor time for; None
-    where that is none; raises Dark. Quick pictures, corrected by how far they are from better ones through the same few rays, and so on
-    to exact ones. What is noisiest, a level or a window of one, takes most samples. What is known of the error comes from
-    differences between independent pictures alone, and from how many of them."""
+    where that is none. Raises Dark. Quick pictures, corrected by how far they are from better ones through the same few
+    rays, and so on to exact ones. What is noisiest, a level or a window of one, takes most samples. What is known of the
+    error comes from differences between independent pictures alone, and from how many of them."""
     renderer, best = Renderer(program, scene, frame, folder, seconds), None
     try:
         levels = levels_of(renderer, size, min(wanted))

@@ -137,7 +137,8 @@ std::string content_text(const Scene& scene) {
     if (totals.deforming)
         text += "  deforming     " + count_text(totals.deforming, "instance") + ", by skins or morph targets\n";
     if (totals.last_key > 0)
-        text += "  animation     " + count_text(totals.animated_nodes, "node") + ", " +
+        text += "  animation     " +
+                (totals.animated_nodes ? count_text(totals.animated_nodes, "node") + ", " : std::string()) +
                 seconds_text(double{totals.last_key}) + "\n";
     for (const CameraSource& camera : scene.cameras)
         text += "  camera        " + printable(camera.name.empty() ? "(no name)" : camera.name, 80) +
