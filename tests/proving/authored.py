@@ -3,7 +3,7 @@ seeds of the others keep their scenes."""
 import numpy as np
 
 from families import Drawn, foliage, hall, headlights, keyhole, moving, slats, smoke, soft_lamps, underwater
-from geometry import Material, Mesh, box, cylinder, sphere
+from geometry import Deformation, Material, Mesh, box, cylinder, sphere
 
 
 def gradient(c, brightness):
@@ -81,11 +81,34 @@ def colored(c):
     return drawn
 
 
+def reeds(c, drawn, seconds):
+    """Thin columns around what the camera looks at, that lean over or bend meanwhile."""
+    eye, middle = (np.array(place["keys"][0][1] if isinstance(place, dict) else place, float)
+                   for place in (drawn.camera["position"], drawn.camera["target"]))
+    size = np.linalg.norm(middle - eye)
+    for _ in range(c.randint(1, 5)):
+        height, base = size * c.uniform(0.3, 0.9), middle + size * np.array(c.point((-0.4, -0.4, -0.4), (0.4, -0.2, 0.4)))
+        radius, rings = size * c.log(0.003, 0.03), [base + (0, height * part, 0) for part in np.linspace(0, 1, 7)]
+        shape = np.concatenate([cylinder(low, high, radius, 6) for low, high in zip(rings, rings[1:])])
+        angle, around = c.uniform(0.2, 1.2), c.uniform(0, 2 * np.pi)
+        if c.happens(0.5):
+            lean = np.array([np.cos(around), -0.3, np.sin(around)]) * np.sin(angle)
+            target = shape + lean * ((shape[..., 1:2] - base[1]) ** 2 / height)
+            how = Deformation(seconds, target=target)
+        else:
+            half = np.sin(angle / 2)
+            how = Deformation(seconds, pivot=tuple(rings[2]), height=height / 2,
+                              turn=(half * np.cos(around), 0, half * np.sin(around), np.cos(angle / 2)))
+        drawn.meshes.append(Mesh(Material(c.color()), shape, how))
+
+
 def open_shutter(c):
-    """What moves is seen while it does."""
+    """What moves is seen while it does, meshes that change their shape among it."""
     drawn = moving(c)
     middle, half = c.uniform(-0.5, 0.5), c.uniform(0.1, 0.5)
     drawn.camera["shutter"] = {"open": middle - half, "close": middle + half, "curve": c.choice(["box", "triangle"])}
+    if c.happens(0.5):
+        reeds(c, drawn, c.uniform(0.5, 3) * (drawn.frame + 1) / 24)
     return drawn
 
 

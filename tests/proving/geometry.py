@@ -19,10 +19,22 @@ class Material:
 
 
 @dataclasses.dataclass
+class Deformation:
+    """Within so many seconds a morph target takes the mesh to other points, or a joint turns what is above its pivot: the
+    more, the higher, up to `height` above it."""
+    seconds: float
+    target: np.ndarray = None
+    pivot: tuple = None
+    height: float = 1
+    turn: tuple = None  # a quaternion: x, y, z, w
+
+
+@dataclasses.dataclass
 class Mesh:
     """`points` are three a triangle, N x 3 x 3; a leaf's texture coordinates repeat every two triangles."""
     material: Material
     points: np.ndarray
+    deformation: Deformation = None
 
 
 def quads(corners):
@@ -118,43 +130,104 @@ def gltf_material(material):
     return result
 
 
-def write_glb(meshes, path, offset=None):
-    """Flat shaded; the same points give the same bytes. `offset` moves the node."""
-    parts, accessors, primitives = [], [], []
+def flat_normals(triangles):
+    edges = triangles[:, 1:] - triangles[:, :1]
+    normals = np.cross(edges[:, 0], edges[:, 1])
+    return np.repeat(normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30), 3, 0)
 
-    def append(rows, kind):
-        parts.append(rows.astype("<f4").tobytes())
-        accessors.append({"bufferView": len(parts) - 1, "componentType": 5126, "count": len(rows), "type": kind})
-        return len(accessors) - 1
 
-    for index, mesh in enumerate(meshes):
+class Glb:
+    """A binary glTF document as it grows: node 0 holds all others."""
+
+    def __init__(self, offset):
+        self.parts, self.accessors, self.animation = [], [], {"samplers": [], "channels": []}
+        self.nodes, self.meshes, self.skins = [{"children": []} | ({"translation": list(offset)} if offset else {})], [], []
+
+    def append(self, rows, kind, component=5126, ends=False):
+        rows = np.asarray(rows)
+        self.parts.append(rows.astype({5126: "<f4", 5123: "<u2"}[component]).tobytes())
+        accessor = {"bufferView": len(self.parts) - 1, "componentType": component, "count": len(rows), "type": kind}
+        if ends:
+            rows = rows.reshape(len(rows), -1)
+            accessor |= {"min": rows.min(0).tolist(), "max": rows.max(0).tolist()}
+        self.accessors.append(accessor)
+        return len(self.accessors) - 1
+
+    def node(self, **node):
+        self.nodes.append(node)
+        self.nodes[0]["children"].append(len(self.nodes) - 1)
+        return len(self.nodes) - 1
+
+    def animate(self, node, path, seconds, values, kind):
+        self.animation["samplers"].append({"input": self.append([0, seconds], "SCALAR", ends=True),
+                                           "output": self.append(values, kind)})
+        self.animation["channels"].append({"sampler": len(self.animation["samplers"]) - 1,
+                                           "target": {"node": node, "path": path}})
+
+    def primitive(self, mesh, material):
         points = mesh.points.reshape(-1, 3)
-        edges = mesh.points[:, 1:] - mesh.points[:, :1]
-        normals = np.cross(edges[:, 0], edges[:, 1])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
-        attributes = {"POSITION": append(points, "VEC3"), "NORMAL": append(np.repeat(normals, 3, 0), "VEC3")}
-        accessors[attributes["POSITION"]] |= {"min": points.min(0).tolist(), "max": points.max(0).tolist()}
+        attributes = {"POSITION": self.append(points, "VEC3", ends=True), "NORMAL": self.append(flat_normals(mesh.points), "VEC3")}
         if mesh.material.leaf:
             corners = np.array([(0, 0), (1, 0), (1, 1), (0, 0), (1, 1), (0, 1)], float)
-            attributes["TEXCOORD_0"] = append(np.tile(corners, (len(points) // 6, 1)), "VEC2")
-        primitives.append({"attributes": attributes, "material": index})
+            attributes["TEXCOORD_0"] = self.append(np.tile(corners, (len(points) // 6, 1)), "VEC2")
+        return {"attributes": attributes, "material": material}
+
+    def deforming(self, mesh, primitive):
+        """A node of its own, with the keys of its target or joint."""
+        how, points = mesh.deformation, mesh.points.reshape(-1, 3)
+        self.meshes.append({"primitives": [primitive]})
+        node = self.node(mesh=len(self.meshes) - 1)
+        if how.target is not None:
+            moved = how.target.reshape(-1, 3) - points
+            turned = flat_normals(how.target) - flat_normals(mesh.points)
+            primitive["targets"] = [{"POSITION": self.append(moved, "VEC3", ends=True), "NORMAL": self.append(turned, "VEC3")}]
+            self.animate(node, "weights", how.seconds, [0, 1], "SCALAR")
+            return
+        still, joint = self.node(), self.node(translation=list(how.pivot))
+        back = np.eye(4)
+        back[3, :3] = [-part for part in how.pivot]  # columns follow one another
+        share = np.clip((points[:, 1] - how.pivot[1]) / how.height, 0, 1)
+        none = np.zeros_like(share)
+        primitive["attributes"] |= {
+            "JOINTS_0": self.append(np.tile([0, 1, 0, 0], (len(points), 1)), "VEC4", 5123),
+            "WEIGHTS_0": self.append(np.stack([1 - share, share, none, none], 1), "VEC4")}
+        self.skins.append({"joints": [still, joint], "inverseBindMatrices": self.append(np.stack([np.eye(4), back]).reshape(2, 16), "MAT4")})
+        self.nodes[node]["skin"] = len(self.skins) - 1
+        self.animate(joint, "rotation", how.seconds, [(0, 0, 0, 1), how.turn], "VEC4")
+
+
+def write_glb(meshes, path, offset=None):
+    """Flat shaded; the same points give the same bytes. `offset` moves all of them."""
+    glb = Glb(offset)
+    primitives = [glb.primitive(mesh, index) for index, mesh in enumerate(meshes)]
+    still = [primitive for mesh, primitive in zip(meshes, primitives) if not mesh.deformation]
+    if still:
+        glb.meshes.append({"primitives": still})
+        glb.nodes[0]["mesh"] = 0
+    for mesh, primitive in zip(meshes, primitives):
+        if mesh.deformation:
+            glb.deforming(mesh, primitive)
     leaves = any(mesh.material.leaf for mesh in meshes)
     if leaves:
         picture = leaf_picture()
-        parts.append(picture + b"\0" * (-len(picture) % 4))
-    starts = [sum(map(len, parts[:i])) for i in range(len(parts))]
+        glb.parts.append(picture + b"\0" * (-len(picture) % 4))
+    starts = [sum(map(len, glb.parts[:i])) for i in range(len(glb.parts))]
+    lists = {"skins": glb.skins, "animations": [glb.animation] if glb.animation["channels"] else []}
+    if not glb.nodes[0]["children"]:
+        del glb.nodes[0]["children"]
     document = {
-        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0} | ({"translation": list(offset)} if offset else {})],
-        "meshes": [{"primitives": primitives}], "materials": [gltf_material(mesh.material) for mesh in meshes],
-        "accessors": accessors, "buffers": [{"byteLength": sum(map(len, parts))}],
-        "bufferViews": [{"buffer": 0, "byteOffset": s, "byteLength": len(p)} for s, p in zip(starts, parts)]}
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": glb.nodes, "meshes": glb.meshes,
+        "materials": [gltf_material(mesh.material) for mesh in meshes],
+        "accessors": glb.accessors, "buffers": [{"byteLength": sum(map(len, glb.parts))}],
+        "bufferViews": [{"buffer": 0, "byteOffset": s, "byteLength": len(p)} for s, p in zip(starts, glb.parts)]}
+    document |= {name: rows for name, rows in lists.items() if rows}
     if any(max(mesh.material.emission) > 0 for mesh in meshes):
         document["extensionsUsed"] = ["KHR_materials_emissive_strength"]
     if leaves:
         document |= {"textures": [{"source": 0}],
-                     "images": [{"bufferView": len(parts) - 1, "mimeType": "image/png"}]}
+                     "images": [{"bufferView": len(glb.parts) - 1, "mimeType": "image/png"}]}
     text = json.dumps(document).encode()
     text += b" " * (-len(text) % 4)
-    blob = b"".join(parts)
+    blob = b"".join(glb.parts)
     chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(blob), 0x004E4942) + blob
     path.write_bytes(struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks)

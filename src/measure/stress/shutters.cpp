@@ -87,6 +87,34 @@ StressScene fast_post(double way) {
     return shuttered(std::move(scene), 0, 1);
 }
 
+// A bar in a wide beam, one end of which a morph target moves.
+StressScene swinging_bar(double way) {
+    Scene scene = still_scene();
+    scene.lights[0].inner_cone = 0.5f, scene.lights[0].outer_cone = 0.6f;
+    add_box(scene, {-0.1f, 1, -2}, {0.1f, 1.1f, 2});
+    MorphTarget& target = scene.meshes[0].targets.emplace_back();
+    for (const vec3& position : scene.meshes[0].positions)
+        target.positions.emplace_back(position.z > 0 ? static_cast<float>(way) : 0, 0, 0);
+    scene.instances[0].target_weights = {from_to(0.0f, 1.0f)};
+    return shuttered(std::move(scene), 0, 1);
+}
+
+// A bar whose far end turns at a joint in the middle of the beam.
+StressScene bending_bar(double degrees) {
+    Scene scene = still_scene();
+    scene.lights[0].inner_cone = 0.5f, scene.lights[0].outer_cone = 0.6f;
+    Node joint;
+    joint.rotation = from_to(quat(1, 0, 0, 0), glm::angleAxis(static_cast<float>(degrees) * pi / 180, vec3(0, 1, 0)));
+    scene.nodes = {Node{}, joint};
+    scene.skins = {{{0, 1}, {mat4(1), mat4(1)}}};
+    add_box(scene, {-0.7f, 1, -0.1f}, {0.7f, 1.1f, 0.1f});
+    Mesh& bar = scene.meshes[0];
+    bar.influences = 1, bar.joint_count = 2;
+    for (const vec3& position : bar.positions) bar.joints.push_back(position.x > 0), bar.joint_weights.push_back(1);
+    scene.instances[0].skin = 0;
+    return shuttered(std::move(scene), 0, 1);
+}
+
 StressScene fast_eye(double way) {
     Scene scene = still_scene();
     const vec3 half(0.5f * static_cast<float>(way), 0, 0);
@@ -153,6 +181,10 @@ std::vector<StressCase> stress_shutters() {
                    usual),
         StressCase("fast-post", shutter, "a post moves through a beam", "way", "m", {0, 0.5, 2}, Claim::physical,
                    excuses, fast_post, usual),
+        StressCase("swinging-bar", shutter, "a morph target moves one end of a bar in a beam", "way", "m", {0, 0.5, 2},
+                   Claim::physical, excuses, swinging_bar, usual),
+        StressCase("bending-bar", shutter, "a bar in a beam bends at a joint", "angle", "degrees", {0, 20, 90},
+                   Claim::physical, excuses, bending_bar, usual),
         StressCase("fast-eye", shutter, "the eye moves", "way", "m", {0, 0.3, 2}, Claim::physical, excuses, fast_eye,
                    usual),
         StressCase("fast-cloud", shutter, "a cloud moves", "way", "m", {0, 0.5, 3}, Claim::physical, excuses,
