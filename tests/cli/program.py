@@ -9,7 +9,7 @@ import tempfile
 import unittest
 import zlib
 
-from exr import without_name
+from cli.exr import without_name
 
 TYNDALL = os.environ.get("TYNDALL", "tyndall")
 SOURCE = pathlib.Path(os.environ.get("TYNDALL_SOURCE_DIR", pathlib.Path(__file__).parents[2]))

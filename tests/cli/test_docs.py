@@ -10,7 +10,7 @@ import subprocess
 import sys
 import unittest
 
-from program import SOURCE, TYNDALL, ProgramTest
+from cli.program import SOURCE, TYNDALL, ProgramTest
 
 # What takes longer than a few seconds on two cores, or wants a display.
 LONG = re.compile(r"oiiotool|tyndall (chart|stress|verify|plan(?!.*--save)|compare)|--frames 1-|--target-error|--quality (final|reference)|--mode all|--samples [0-9]{3}|--orders all")

@@ -16,7 +16,7 @@ import time
 
 SOURCE = pathlib.Path(__file__).parents[2]
 TESTS = r"^render\."  # whole programs miss times on a busy machine, whatever the fault
-OF_PARTS = r"^(render\.|cli\.test_cli_parts$|proving\.parts$)"
+OF_PARTS = r"^(render\.|cli\.farm\.parts$|proving\.parts$)"
 TARGETS = ["tyndall", "test_render"]
 OF_LIGHT = ["test_scene", "test_volume", "test_modes", "test_render"]
 

@@ -1,0 +1,130 @@
+"""Volumes that move while the shutter is open, from files to the picture and its parts, and what is refused."""
+import json
+import unittest
+
+from cli.exr import read_channels
+from cli.program import CORPORA, ProgramTest, lit_scene, recipe
+
+SHUTTER = {"open": -3, "close": 3}  # of frames of 1/24 s, in a wind of half a metre per second: four voxels of 1/16 m
+VELOCITY = {"grids": {"velocity": "vel"}}
+
+
+def rms(a, b):
+    return (sum((x - y) ** 2 for x, y in zip(a, b)) / len(a)) ** 0.5
+
+
+class VolumeMotion(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.recipe = self.write("dust.json", recipe())
+        self.succeed("bake", self.recipe, "-o", self.path("dust.####.vdb"), "--frames", "1-3", "--velocity", "-q")
+
+    def scene(self, name, medium, shutter=SHUTTER, **fields):
+        camera = {"position": [0, 0.5, 3], "target": [0, 0.5, 0], **({"shutter": shutter} if shutter else {})}
+        medium = {"type": "vdb", "file": "dust.0002.vdb", "extinction": 2, **medium}
+        return self.write(name, lit_scene(**{**dict(camera=camera, media=[medium], frames="2", frame_rate=24, resolution=[48, 27]),
+                                             **fields}))
+
+    def render(self, scene, name, *options):
+        self.succeed("render", scene, "-o", self.path(name), "--frames", "2", "--float", "--background", "off", "-q", *options)
+        return read_channels(self.path(name))
+
+    def test_velocity_moves_a_file_as_its_recipe_moves(self):
+        """In the middle of the picture, where nothing comes in from beyond the recipe's bounds."""
+        shutter = {"open": 0, "close": 12}  # four voxels
+        grown = self.scene("grown.json", {"type": "noise", "recipe": "dust.json"}, shutter)
+        text = json.loads(grown.read_text())
+        del text["media"][0]["file"]
+        grown.write_text(json.dumps(text))
+
+        def middle(scene, *options):
+            alpha = self.render(scene, "a.exr", *options)["A"]
+            return [alpha[y * 48 + x] for y in range(9, 18) for x in range(18, 30)]
+        for mode in ("march", "froxel", "path"):
+            options = ("--mode", mode, "--samples", 64 if mode != "path" else 256, "--orders", 1)
+            truth = middle(grown, *options)
+            moved = middle(self.scene("moved.json", VELOCITY, shutter), *options)
+            still = middle(self.scene("still.json", {}, shutter), *options)
+            self.assertLess(rms(moved, truth), 0.4 * rms(still, truth), mode)
+
+    def test_unit_and_scale(self):
+        second = self.render(self.scene("second.json", VELOCITY), "second.exr")
+        frame = self.render(self.scene("frame.json", {**VELOCITY, "velocity_unit": "frame", "velocity_scale": 1 / 24}), "frame.exr")
+        none = self.render(self.scene("none.json", {**VELOCITY, "velocity_scale": 0}), "none.exr")
+        self.assertLess(rms(second["A"], frame["A"]), 1e-3)
+        self.assertEqual(none, self.render(self.scene("still.json", {}, shutter=None), "still.exr"))
+
+    def test_closed_it_is_a_still(self):
+        still = self.render(self.scene("still.json", {}, shutter=None), "still.exr")
+        self.assertEqual(still, self.render(self.scene("closed.json", VELOCITY, shutter=None), "closed.exr"))
+        blend = {"file": "dust.####.vdb", "sequence": {"blend": True}}
+        self.assertEqual(still, self.render(self.scene("blend.json", blend, shutter=None), "blend.exr"))
+
+    def test_a_blend_lies_between_its_files(self):
+        blend = self.scene("blend.json", {"file": "dust.####.vdb", "extinction": 0.01, "sequence": {"blend": True}}, {"close": 1})
+        mixed = self.render(blend, "mixed.exr")["A"]
+        ends = [self.render(self.scene("end.json", {"file": f"dust.000{frame}.vdb", "extinction": 0.01}, shutter=None), "end.exr")["A"]
+                for frame in (2, 3)]
+        self.assertLess(rms(mixed, [(a + b) / 2 for a, b in zip(*ends)]), 0.05 * rms(*ends))
+
+    def test_limitations(self):
+        def said(medium):
+            lamp = {"name": "lamp", "type": "point", "position": {"keys": [[0, [0, 2, 0]], [1, [1, 2, 0]]]}, "intensity": 9}
+            scene = self.scene("said.json", {"file": "dust.####.vdb", **medium}, lights=[lamp])
+            return self.succeed("render", scene, "-o", self.path("a.exr"), "-v").stderr
+        self.assertIn("it stands still for the", said({}))
+        self.assertIn("moves along straight lines by its velocities", said(VELOCITY))
+        self.assertIn("two of its files are mixed", said({"sequence": {"blend": True}}))
+
+    def test_bits_do_not_depend_on_threads_and_parts(self):
+        for medium in (VELOCITY, {"file": "dust.####.vdb", "sequence": {"blend": True}}):
+            scene, plan = self.scene("scene.json", medium), self.path("plan.json")
+            for mode in ("march", "froxel"):
+                one = self.render(scene, "one.exr", "--mode", mode, "--threads", 1)
+                self.assertEqual(one, self.render(scene, "two.exr", "--mode", mode, "--threads", 2), mode)
+                self.succeed("plan", scene, "--mode", mode, "--save", plan, "-q", "--samples", 8, "--groups", 2, "--float", "--frames", "2")
+                self.succeed("render", "--plan", plan, "-o", self.path("one.exr"), "-q")
+                self.succeed("prepare", "--plan", plan, "-q")
+                for part in (2, 1):
+                    self.succeed("render", "--plan", plan, "-o", self.path("frame.exr"), "--part", f"{part}/2", "-q")
+                self.succeed("merge", *sorted(self.directory.glob("frame.part-*")), "-o", self.path("merged.exr"), "-q")
+                self.assertEqual(read_channels(self.path("one.exr")), read_channels(self.path("merged.exr")), mode)
+                self.succeed("prepare", "--plan", plan, "--clean-all", "-q")
+                for file in (plan, *self.directory.glob("*.exr")):
+                    file.unlink()
+
+    def test_what_makes_no_sense_is_refused_in_one_line(self):
+        sequence = {"file": "dust.####.vdb"}
+        for medium, words in (
+                ({"velocity_unit": "frame"}, ["velocity_unit", "says nothing without"]),
+                ({"velocity_scale": 2}, ["velocity_scale", "says nothing without"]),
+                ({**VELOCITY, "velocity_unit": "hour"}, ["velocity_unit"]),
+                ({"sequence": {"blend": True}}, ["/media/0/sequence/blend", "numbered files"]),
+                ({**sequence, **VELOCITY, "sequence": {"blend": True}}, ["/media/0/grids/velocity", "say one"]),
+                ({**sequence, **VELOCITY, "sequence": {"mode": "ping_pong"}}, ["/media/0/grids/velocity", "ping_pong"]),
+                ({"grids": {"velocity": "wind"}}, ["has no grid \"wind\"", "vel"]),
+                ({"grids": {"velocity": "density"}}, ["density", "one number a voxel"]),
+                ({**VELOCITY, "velocity_scale": 1e6}, ["its velocity moves it by up to", "velocity_unit"])):
+            self.refuse(3, words, "render", self.scene("bad.json", medium), "-o", self.path("a.exr"), "-q")
+        self.path("dust.0003.vdb").unlink()
+        self.succeed("bake", self.recipe, "-o", self.path("dust.####.vdb"), "--frames", "4", "-q")
+        gap = self.scene("gap.json", {**sequence, "sequence": {"blend": True}}, {"close": 0.5})
+        self.refuse(4, ["dust.0003.vdb", "missing"], "render", gap, "-o", self.path("a.exr"), "-q")
+        self.render(gap, "a.exr", "--missing", "hold")
+
+    def test_files_of_others(self):
+        """Mantaflow's staggered velocities, fire among them, and voxels whose size changes from file to file."""
+        for name, pattern, frame in (("wavelet", "fluid_data_####.vdb", 151), ("pesichra", "fluid_data_####.vdb", 48)):
+            folder = next((path / "vdb" / name for path in CORPORA if (path / "vdb" / name).is_dir()), None)
+            if not folder:
+                self.skipTest("these files do not travel with the program")
+            for medium in ({"grids": {"velocity": "velocity"}, "velocity_scale": 0.05}, {"sequence": {"blend": True}}):
+                scene = self.write("others.json", lit_scene(
+                    camera={"position": [0, 1, 4], "target": [0, 0.5, 0], "shutter": {"open": -0.25, "close": 0.25}},
+                    media=[{"type": "vdb", "file": str(folder / pattern), "up_axis": "Z", "scale": 0.2, "extinction": 30, **medium}]))
+                self.succeed("render", scene, "-o", self.path("a.####.exr"), "--frames", frame, "--float", "-q")
+                self.assertGreater(sum(read_channels(self.path(f"a.{frame:04}.exr"))["A"]), 0, name)
+
+
+if __name__ == "__main__":
+    unittest.main()
