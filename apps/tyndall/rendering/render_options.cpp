@@ -73,7 +73,7 @@ void add_how(const Command& command, RenderOptions& texts) {
            "OPEN,CLOSE");
     option("--time-samples", texts.time_samples,
            "moments that a frame with an open shutter is made of: each is prepared by itself.\n"
-           "Default: 4 to 32, by how far things move on the image meanwhile",
+           "Default: 4 to 512, by how far things move on the image meanwhile",
            "N");
     command
         .options("--set", texts.settings,
