@@ -14,7 +14,7 @@
 namespace tyndall {
 namespace {
 int affinity_cores() {
-    // The mask of a machine with many cores outgrows cpu_set_t: asked for again with twice the room.
+    // On machines with many cores the affinity mask exceeds cpu_set_t, so retry with twice the size.
     for (int room = 1024; room <= 1 << 20; room *= 2) {
         std::vector<cpu_set_t> mask(static_cast<size_t>(room) / CPU_SETSIZE);
         const size_t bytes = mask.size() * sizeof(cpu_set_t);
@@ -30,7 +30,7 @@ std::string first_line(const std::filesystem::path& path) {
     return line;
 }
 
-// This process's group in the v2 hierarchy, from the line "0::/batch/job_7".
+// Path of this process's cgroup in the v2 hierarchy, from a line such as "0::/batch/job_7".
 std::string control_group() {
     std::ifstream stream("/proc/self/cgroup");
     for (std::string line; std::getline(stream, line);)
@@ -43,7 +43,7 @@ int granted_cores(std::string_view cpu_max) {
     int64_t quota = 0, period = 0;
     const char* const end = cpu_max.data() + cpu_max.size();
     const auto first = std::from_chars(cpu_max.data(), end, quota);
-    if (first.ec != std::errc() || first.ptr == end || *first.ptr != ' ') return 0; // also "max 100000"
+    if (first.ec != std::errc() || first.ptr == end || *first.ptr != ' ') return 0; // includes "max 100000"
     const auto second = std::from_chars(first.ptr + 1, end, period);
     if (second.ec != std::errc() || quota <= 0 || period <= 0) return 0;
     return static_cast<int>(std::min<int64_t>((quota - 1) / period + 1, 1 << 20));
@@ -51,7 +51,7 @@ int granted_cores(std::string_view cpu_max) {
 
 int usable_cores() {
     int cores = std::max(affinity_cores(), 1);
-    // Every group on the way up may set a limit of its own.
+    // Every ancestor group may set its own limit.
     const std::filesystem::path root = "/sys/fs/cgroup";
     for (std::filesystem::path group = control_group();; group = group.parent_path()) {
         const int granted = granted_cores(first_line(root / group / "cpu.max"));

@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-// Everything a terminal could act on (control characters, malformed UTF-8) spelt out as \x1b.
+// Escapes everything a terminal could act on (control characters, malformed UTF-8) in the form \x1b.
 std::string escaped(std::string_view text) {
     std::string result;
     while (!text.empty()) {
@@ -29,7 +29,7 @@ std::string escaped(std::string_view text) {
 
 bool inside_character(std::string_view text, size_t at) { return at < text.size() && (text[at] & 0xc0) == 0x80; }
 
-// Both ends of a long place are kept: the file's name in front, the field behind.
+// Keeps both ends of a long location: the file name at the front and the field at the back.
 std::string shortened_place(std::string_view where) {
     constexpr size_t most = 220, head = 100, tail = most - head;
     const std::string front = escaped(where.substr(0, most + 4));
@@ -70,7 +70,7 @@ void fail(ExitCode code, std::string_view where, std::string_view what) { throw 
 void refuse(std::string_view where, std::string_view what) { throw Error(ExitCode::refused, where, what); }
 
 std::string printable(std::string_view text, size_t most) {
-    // Four bytes more than fit: a character torn by this first cut is dropped by the second.
+    // Take four bytes more than fit: a character split by this first cut is dropped by the second.
     std::string result = escaped(text.substr(0, most + 4));
     if (result.size() <= most) return result;
     size_t end = most - std::min<size_t>(most, 3);

@@ -1,4 +1,4 @@
-// One exception for everything a user can cause: where it happened, what is wrong, and the exit code it means.
+// One exception type for every error a user can cause: where it happened, what is wrong, and the exit code.
 #pragma once
 #include <span>
 #include <stdexcept>
@@ -6,7 +6,7 @@
 #include <string_view>
 
 namespace tyndall {
-// What a process of the program ends with (exit_codes() says what each means).
+// Exit codes of the programs (exit_codes() says what each means).
 enum class ExitCode {
     ok = 0,
     differs = 1,
@@ -25,7 +25,7 @@ struct ExitCodeMeaning {
     ExitCode code;
     std::string_view meaning;
 };
-// The one table: --help and the docs derive from it.
+// The table that --help and the docs are generated from.
 std::span<const ExitCodeMeaning> exit_codes();
 
 class Error : public std::runtime_error {
@@ -34,11 +34,11 @@ public:
     ExitCode code;
 };
 
-// `where` names file and field ("scenes/a.json: /lights/0/type"), `what` says what is wrong and what would do.
+// `where` names the file and field ("scenes/a.json: /lights/0/type"); `what` says what is wrong and what is accepted.
 [[noreturn]] void fail(ExitCode code, std::string_view where, std::string_view what);
-[[noreturn]] void refuse(std::string_view where, std::string_view what); // input is wrong: exit code 3
+[[noreturn]] void refuse(std::string_view where, std::string_view what); // invalid input: exit code 3
 
-// Runs `body`; an Error that it throws gets `where` in front.
+// Runs `body` and prefixes any Error it throws with `where`.
 decltype(auto) within(std::string_view where, const auto& body) {
     try {
         return body();
@@ -47,6 +47,6 @@ decltype(auto) within(std::string_view where, const auto& body) {
     }
 }
 
-// Foreign text made fit for one line of output: control bytes escaped, cut to `most` bytes.
+// Untrusted text made safe for one line of output: control bytes escaped, truncated to `most` bytes.
 std::string printable(std::string_view text, size_t most = 200);
 }

@@ -19,7 +19,7 @@ void legendre(int n, double x, double& value, double& slope) {
     slope = n * (x * value - before) / (x * x - 1);
 }
 
-// Roots by Newton's method from Tricomi's first guess.
+// Roots by Newton's method from Tricomi's initial guess.
 std::vector<QuadratureNode> rule(int n) {
     std::vector<QuadratureNode> nodes;
     for (int i = 0; i < n; ++i) {

@@ -1,5 +1,5 @@
 // GLM under short names, and the few geometric types everything shares.
-// World space is right-handed, Y up, metres; angles are radians; colours are linear Rec.709.
+// World space is right-handed, Y up, meters; angles are radians; colors are linear Rec.709.
 #pragma once
 #include <glm/glm.hpp>
 
@@ -22,7 +22,7 @@ struct Ray {
     vec3 at(float t) const { return origin + t * direction; }
 };
 
-// A stretch low..high of a ray, or of each of sixteen rays; empty where high <= low.
+// An interval low..high along a ray, or along each ray of a packet of sixteen; empty if high <= low.
 template<class T> struct Interval {
     T low{}, high{};
 
@@ -47,8 +47,8 @@ struct Box {
 
 inline constexpr Box everywhere() { return {vec3(-infinity), vec3(infinity)}; }
 
-// The part of origin + t·direction, low <= t <= high, inside the box; nothing of an empty box. The direction may have
-// any length, zeros included.
+// The part of origin + t·direction, low <= t <= high, inside the box; empty for an empty box. The direction may have
+// any length, and its components may be zero.
 inline Interval<float> clip(const Box& box, vec3 origin, vec3 direction, Interval<float> range) {
     if (box.empty()) return {};
     for (int axis = 0; axis < 3; ++axis) {
@@ -66,8 +66,7 @@ inline Interval<float> clip(const Box& box, vec3 origin, vec3 direction, Interva
 
 inline bool is_finite(vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// The smallest axis-aligned box around an affinely transformed box; one that is infinite in any direction becomes
-// everywhere.
+// The smallest axis-aligned box around an affinely transformed box; everywhere() for a box that is not finite.
 inline Box transform(const mat4& matrix, const Box& box) {
     if (box.empty()) return box;
     if (!is_finite(box.low) || !is_finite(box.high)) return everywhere();
@@ -87,7 +86,7 @@ inline void make_frame(vec3 axis, vec3& u, vec3& v) {
     v = vec3(b, sign + axis.y * axis.y * a, -axis.y);
 }
 
-inline float mean_component(vec3 v) { return v.x + ((v.y - v.x) + (v.z - v.x)) / 3; } // of equal ones exactly that
+inline float mean_component(vec3 v) { return v.x + ((v.y - v.x) + (v.z - v.x)) / 3; } // exact if all are equal
 inline float max_component(vec3 v) { return std::max(v.x, std::max(v.y, v.z)); }
 inline float luminance(vec3 rgb) { return glm::dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f)); }
 }

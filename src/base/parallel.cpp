@@ -20,8 +20,8 @@ std::unique_ptr<tbb::global_control>& limit() {
     return control;
 }
 
-// Runs a loop over [0, count) in which every task rounds as the calling thread does, and a thread that waits for it
-// takes up nothing else: an outer loop's body is never entered a second time on the same stack, so it may hold a lock.
+// Runs a loop over [0, count) with the caller's floating-point settings. A thread that waits for the loop runs no other
+// tasks, so an outer loop's body is never re-entered on the same stack and may hold a lock.
 template<class Body> void run(int64_t count, const Body& body) {
     if (count <= 0) return;
     tbb::task_group_context context;
@@ -47,7 +47,7 @@ void parallel_for(int64_t count, const std::function<void(int64_t)>& body) {
 }
 
 void parallel_ranges(int64_t count, int64_t grain, const std::function<void(int64_t, int64_t)>& body) {
-    // Split evenly into pieces of at least the grain, of which neighbours may be handed out together.
+    // Split evenly into pieces of at least `grain` items; adjacent pieces may go to body() as one range.
     const int64_t pieces = std::max<int64_t>(count / std::max<int64_t>(grain, 1), 1);
     const int64_t size = count / pieces, larger = count % pieces;
     const auto start = [&](int64_t piece) { return piece * size + std::min(piece, larger); };
@@ -55,7 +55,7 @@ void parallel_ranges(int64_t count, int64_t grain, const std::function<void(int6
         [&](const tbb::blocked_range<int64_t>& range) { body(start(range.begin()), start(range.end())); });
 }
 
-// Each body waits for its own loops only; whoever waits for the bodies takes part in any.
+// Each body is isolated and waits for its own loops only; the calling thread helps with all of them.
 void run_together(std::initializer_list<std::function<void()>> bodies) {
     if (bodies.size() == 0) return;
     tbb::task_group_context context;

@@ -1,4 +1,4 @@
-// What this process has taken.
+// Memory of this process and of the machine.
 #pragma once
 #include <sys/resource.h>
 #include <unistd.h>
@@ -7,14 +7,14 @@
 #include <fstream>
 
 namespace tyndall {
-// The most memory it ever held, bytes.
+// Peak resident memory, bytes.
 inline uint64_t peak_memory() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return static_cast<uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-// What it holds now, and what the machine has, bytes; 0 where that is not known.
+// Current resident memory of the process, and physical memory of the machine, bytes; 0 if unknown.
 inline uint64_t held_memory() {
     uint64_t all = 0, resident = 0;
     std::ifstream("/proc/self/statm") >> all >> resident;

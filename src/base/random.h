@@ -1,4 +1,4 @@
-// Counter-based random numbers: a value depends only on what it is for, never on who asked before.
+// Counter-based random numbers: a value depends only on its keys, never on earlier calls.
 #pragma once
 #include <cstdint>
 
@@ -15,15 +15,15 @@ template<class... More> constexpr uint32_t hash(uint32_t a, More... more) {
     return mix(a + 0x9e3779b9u + 0x85ebca6bu * hash(static_cast<uint32_t>(more)...));
 }
 
-// The 24 leading bits as a number in [0, 1).
+// The upper 24 bits as a number in [0, 1).
 constexpr float to_unit(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
 
-// A number in [0, 1) for one use: pixel index, sample index, dimension, seed.
+// A random number in [0, 1) for one pixel index, sample index, dimension and seed.
 constexpr float random_unit(uint32_t pixel, uint32_t sample, uint32_t dimension, uint32_t seed) {
     return to_unit(hash(pixel, sample, dimension, seed));
 }
 
-// Numbers in [0, 1) one after the other, for uses that cannot be counted beforehand.
+// A stream of random numbers in [0, 1), for uses whose count is not known in advance.
 struct RandomStream {
     uint32_t key, count = 0;
     constexpr float next() { return to_unit(hash(key, count++)); }
@@ -37,7 +37,7 @@ constexpr uint32_t reverse_bits(uint32_t x) {
     return (x >> 16) | (x << 16);
 }
 
-// Hashed Owen scrambling of a bit-reversed index (Laine–Karras form, Vegdahl's constants).
+// Hash-based Owen scrambling (Laine–Karras form, Vegdahl's constants).
 constexpr uint32_t owen_scramble(uint32_t x, uint32_t seed) {
     x = reverse_bits(x);
     x ^= x * 0x3d20adeau, x += seed, x *= (seed >> 16) | 1u;
@@ -45,7 +45,7 @@ constexpr uint32_t owen_scramble(uint32_t x, uint32_t seed) {
     return reverse_bits(x);
 }
 
-// Second Sobol dimension of an index, as 32 bits.
+// Second dimension of the Sobol sequence at `index`, as 32 bits.
 constexpr uint32_t sobol2(uint32_t index) {
     uint32_t result = 0;
     for (uint32_t direction = 1u << 31; index; index >>= 1, direction ^= direction >> 1)

@@ -13,11 +13,11 @@ struct Block {
 };
 struct Store {
     std::mutex mutex;
-    std::vector<Block> blocks; // the one given back last is at the end
+    std::vector<Block> blocks; // most recently returned last
     Store() { blocks.reserve(max_blocks + 1); }
 };
 Store& store() {
-    static Store& blocks = *new Store; // outlives whatever still gives memory back as the program ends
+    static Store& blocks = *new Store; // never destroyed: memory may be returned during program exit
     return blocks;
 }
 }

@@ -1,5 +1,5 @@
-// Arrays of the same size made frame after frame: memory given back is handed out again as it is, without a visit to
-// the system, which would have to clear every page of it anew.
+// An allocator for arrays of the same size that are allocated every frame: freed blocks are reused as they are, which
+// avoids having the operating system clear every page again.
 #pragma once
 #include <cstddef>
 #include <new>
@@ -7,11 +7,11 @@
 #include <vector>
 
 namespace tyndall {
-// At least 64-byte aligned. What is given back is kept up to a limit, for blocks of the same size only.
+// 64-byte aligned. Returned blocks are kept, up to a limit, for requests of the same size only.
 void* take_memory(size_t bytes);
 void give_memory(void* memory, size_t bytes) noexcept;
 
-// Elements that are given no value have none: what lay there before.
+// Elements constructed without a value are left uninitialized.
 template<class T> struct RecyclingAllocator {
     using value_type = T;
     RecyclingAllocator() = default;

@@ -1,4 +1,4 @@
-// Elements that no longer change, shared by any number of users: a vector that is done, or part of a mapped file.
+// An immutable array shared by any number of users: a finished vector, or part of a mapped file.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -15,7 +15,7 @@ public:
         const auto owner = std::make_shared<const std::vector<T>>(std::move(elements));
         elements_ = *owner, owner_ = owner;
     }
-    // Elements that live as long as their owner.
+    // Elements kept alive by `owner`.
     SharedArray(std::span<const T> elements, std::shared_ptr<const void> owner)
         : elements_(elements), owner_(std::move(owner)) {}
 

@@ -1,10 +1,10 @@
-// Pictures made smaller.
+// Downsamples images.
 #pragma once
 #include "base/image.h"
 #include "base/parallel.h"
 
 namespace tyndall {
-// Every pixel is the mean of `value(pixel)` over the pixels it covers of the larger picture, a vec3.
+// Box filter: each pixel is the mean of value(pixel), a vec3, over the pixels of the larger image that it covers.
 template<typename Value> Image<vec3> shrunk(const Image<vec3>& image, ivec2 size, Value value) {
     Image<vec3> result(size);
     parallel_for(size.y, [&](int64_t row) {

@@ -9,7 +9,7 @@
 
 namespace tyndall {
 namespace {
-// Optimal string alignment distance, row by row.
+// Optimal string alignment distance.
 size_t edit_distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<size_t>> cost(a.size() + 1, std::vector<size_t>(b.size() + 1));
     for (size_t i = 0; i <= a.size(); ++i) {

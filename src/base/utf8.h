@@ -1,4 +1,4 @@
-// UTF-8 checked byte by byte, for text that comes from files and command lines.
+// UTF-8 validation, for text from files and command lines.
 #pragma once
 #include <cstddef>
 #include <string_view>

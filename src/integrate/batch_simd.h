@@ -1,4 +1,4 @@
-// What kernels write to their batch (see base/simd/simd.h for how such files are compiled).
+// Conversion between a RayBatch and SIMD kernels (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_INTEGRATE_BATCH_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_INTEGRATE_BATCH_SIMD_H
 #undef TYNDALL_INTEGRATE_BATCH_SIMD_H
@@ -13,7 +13,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// The rays of a batch; lanes without one repeat the last.
+// The rays of a batch; unused lanes repeat the last ray.
 struct Rays16 {
     Vec3s origin, direction;
     Floats t_max, jitter;
@@ -30,7 +30,7 @@ HWY_INLINE Rays16 rays_of(const RayBatch& batch) {
     return {{load(v[0]), load(v[1]), load(v[2])}, {load(v[3]), load(v[4]), load(v[5])}, load(v[6]), load(v[7])};
 }
 
-// Scatter of sixteen rays.
+// Results for sixteen rays.
 struct Scatter16 {
     Vec3s radiance;
     Floats transmittance, validity, steps;
@@ -47,7 +47,7 @@ HWY_INLINE void store_results(const Scatter16& scatter, std::span<Scatter> resul
                          .steps = static_cast<int>(v[5][lane])};
 }
 
-// Adds to a part of the rays' light, where that is asked for.
+// Adds to one part of the rays' light, if parts are requested.
 HWY_INLINE void add_part(const Vec3s& light, size_t index, const RayBatch& batch) {
     if (batch.parts.empty()) return;
     alignas(64) float rgb[3][16];

@@ -1,22 +1,22 @@
-// Places along a ray that are even in the angle seen from a local light: there 1/r² is constant (Kulla & Fajardo 2012,
-// section 4.1).
+// Equi-angular sampling along a ray: uniform in the angle seen from a local light, which cancels 1/r² (Kulla & Fajardo
+// 2012, section 4.1).
 #pragma once
 #include <cmath>
 
 namespace tyndall {
-// A stretch of a ray by its angles: t = nearest + height · tan θ.
+// A ray segment parameterized by angle: t = nearest + height · tan θ.
 template<class T> struct EquiAngular {
-    T nearest{}, height{}; // t where the ray passes the light, and how far off
-    T from{}, to{};        // θ of the stretch's ends
+    T nearest{}, height{}; // t of the point closest to the light, and its distance from the light
+    T from{}, to{};        // θ at the ends of the segment
 
     struct Place {
-        T t, length; // length: dt/dshare, what a unit of the share stands for
+        T t, length; // length: dt/dshare
     };
-    Place at(T share) const { // share of the angle that lies before, 0..1
+    Place at(T share) const { // share: fraction of the angle range, 0..1
         const T slope = std::tan(from + share * (to - from));
         return {nearest + height * slope, (to - from) * height * (1 + slope * slope)};
     }
-    T density(T t) const { // of places that are even in the share, 1/m
+    T density(T t) const { // PDF of t for uniform shares, 1/m
         const T off = t - nearest;
         return height / ((to - from) * (height * height + off * off));
     }

@@ -1,4 +1,4 @@
-// Fog that only dims: for looks that add their light by other means.
+// Fog that only attenuates, for techniques that add their light by other means.
 #pragma once
 #include "base/math.h"
 #include "integrate/ray_batch.h"
@@ -6,6 +6,6 @@
 namespace tyndall {
 struct Medium;
 
-// Transmittance of homogeneous and height fog in closed form, and no light of its own.
+// Analytic transmittance of homogeneous and height fog; no in-scattering or emission.
 ScatterFunction dimming_only(std::vector<Medium> media);
 }

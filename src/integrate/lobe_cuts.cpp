@@ -7,10 +7,10 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_angles = 16; // forward; as many backward
+constexpr int max_angles = 16; // in the forward hemisphere; mirrored backward
 
-// Radians off straight on (or straight back) between which a table falls from its peak there. Light is no polynomial
-// across them.
+// Angles in radians from the forward (or backward) direction between which a table falls off from its peak there.
+// Quadrature must not cross them, because the falloff is not polynomial.
 Interval<float> fall_of(const PhaseTable& table, bool back) {
     const size_t last = table.values.size() - 1;
     const auto value = [&](size_t i) { return table.values[back ? last - i : i]; };
@@ -30,7 +30,7 @@ void add_angle(float angle, std::vector<float>& angles) {
 }
 
 LobeCuts lobe_cuts(std::span<const Medium> media) {
-    float width = 1; // radians, about
+    float width = 1; // approximate lobe width, radians
     std::vector<float> angles;
     for (const Medium& medium : media) {
         const auto& shape = medium.optics.phase.shape;

@@ -1,20 +1,20 @@
-// Where light along rays is cut for the sake of narrow lobes of phase functions. Those of droplets turn from bright to
-// dim within a fraction of a degree, while other light changes with the whole angle seen from the lamp.
+// Where to split the integration along rays for narrow phase function lobes. Those of droplets fall off within a
+// fraction of a degree, while the rest of the integrand varies smoothly with the angle seen from the light.
 #pragma once
 #include <span>
 
 namespace tyndall {
 struct Medium;
 
-// Slopes u / h of points of a ray, u from where it passes the lamp at a distance h: ascending, so that the angle off
-// the lobe's axis doubles from one to the next, forward and backward alike. None where no lobe is narrow.
+// Slopes u / h of points on a ray, where u is measured from the point closest to the light, at distance h. Ascending;
+// the angle from the lobe's axis doubles from one to the next, both forward and backward. Empty if no lobe is narrow.
 struct LobeCuts {
     int count = 0;
     float slopes[32] = {};
 };
 
-inline constexpr float wide_lobe = 0.3f; // 1 - |g|: needs no cuts
+inline constexpr float wide_lobe = 0.3f; // 1 - |g| above which no cuts are needed
 
-// Of the media's phase functions of several lobes, and tables; a single lobe is looked at by its g.
+// Cuts for multi-lobe and tabulated phase functions; single lobes are handled through their g.
 LobeCuts lobe_cuts(std::span<const Medium> media);
 }

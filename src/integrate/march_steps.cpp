@@ -8,10 +8,10 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_steps = 65536;              // per ray; longer ones beyond
-constexpr float step_share_of_extent = 1e-4f; // nearer to a light steps shrink no further
+constexpr int max_steps = 65536;              // per ray; steps are lengthened to fit
+constexpr float step_share_of_extent = 1e-4f; // minimum distance to a light for step lengths
 
-// The parts of a piece of a ray inside the cones of spots, from its start.
+// The parts of a piece of a ray inside spot light cones, relative to the start of the piece.
 void find_beams(const MarchSteps& rule, const Ray& ray, Interval<float> piece, std::vector<Step>& beams) {
     beams.clear();
     for (const Light& light : rule.lights) {
@@ -24,7 +24,7 @@ void find_beams(const MarchSteps& rule, const Ray& ray, Interval<float> piece, s
     }
 }
 
-// Steps of one piece of a ray, as long as the settings allow on a piece of that length.
+// Appends the steps of one piece of a ray, with the longest step relative to the piece's length.
 void append_piece(const MarchSteps& march, const Snapshot& snapshot, const Ray& ray, Interval<float> piece,
                   std::vector<Step>& steps) {
     if (piece.empty()) return;

@@ -1,21 +1,21 @@
-// Where the march evaluates the fog of a ray: steps as its settings ask for.
+// Ray-marching steps according to the march settings.
 #pragma once
 #include "volume/rays/steps.h"
 
 namespace tyndall {
-// How shadows of surfaces in the fog are found: sampled by rays or looked up in maps at each step, integrated over the
-// lit intervals of the ray, or so with everything else as exact: the reference.
+// How surface shadows in the fog are computed: by shadow rays or shadow maps at each step, by integration over the lit
+// intervals of the ray, or `exact`: likewise, with all other terms exact too (the reference).
 enum class Visibility { off, rays, maps, intervals, exact };
 
 struct MarchSettings {
-    float step_depth = 0.25f;        // most optical depth per step
-    float step_voxels = 8;           // most voxels per step
-    float step_share = 1.0f / 28;    // longest step as a share of the ray's stretch through fog
-    float near_light = 0.5f;         // a step is at most this share of the distance to a local light
-    float min_transmittance = 1e-3f; // the march stops where less than this passes
+    float step_depth = 0.25f;        // maximum optical depth per step
+    float step_voxels = 8;           // maximum voxels per step
+    float step_share = 1.0f / 28;    // longest step as a share of the ray's length in fog
+    float near_light = 0.5f;         // a step is at most this fraction of the distance to a local light
+    float min_transmittance = 1e-3f; // the march stops below this transmittance
     Visibility visibility = Visibility::intervals;
-    int nodes = 4;         // Gauss–Legendre nodes on each lit stretch of fog in closed form
-    int light_marches = 0; // exact: nodes of a ray from which the way to a light is marched; 0 = all
+    int nodes = 4;         // Gauss–Legendre nodes per lit interval of homogeneous or height fog
+    int light_marches = 0; // exact: nodes per ray from which transmittance to a light is marched; 0 = all
 };
 
 struct Light;
@@ -23,13 +23,13 @@ struct Snapshot;
 
 struct MarchSteps {
     MarchSettings settings;
-    std::vector<Light> lights;     // whose strength or shadows the steps have to resolve
-    std::vector<vec3> near_points; // of the local ones among them
+    std::vector<Light> lights;     // whose intensity or shadows the steps must resolve
+    std::vector<vec3> near_points; // of the local lights among them
 };
 MarchSteps march_steps(const MarchSettings& settings, std::vector<Light> lights);
 
-// The part of a ray's fog that gets most steps. Fog that goes on far beyond the scene holds no shadows there: what the
-// scene covers gets steps of its own; else all of it.
+// The part of a ray's fog that gets most steps: the part inside the scene's bounds if the fog extends far beyond them,
+// where there are no shadows; else all of it.
 Interval<float> scene_part(const Snapshot& snapshot, const Ray& ray, Interval<float> fog);
 
 // Appends the steps of a ray, ascending and disjoint.

@@ -1,4 +1,4 @@
-// The mean light along one ray by a technique that samples, and how well it is known.
+// Monte Carlo estimate of the light along one ray, with its standard error.
 #pragma once
 #include "integrate/ray_batch.h"
 
@@ -9,7 +9,7 @@ struct RayEstimate {
     dvec3 value{0}, error{0}; // mean and its standard error
 };
 
-// `part` picks what counts of a sample. 64 batches of `samples` each, every batch a sequence of its own.
+// `part` extracts the estimated quantity from a sample. Uses 64 batches of `samples`, each with its own sequence.
 RayEstimate estimate_ray(const ScatterFunction& scatter, const Ray& ray, int samples,
                          const std::function<vec3(const Scatter&)>& part);
 }

@@ -1,4 +1,4 @@
-// Where rays are cut: where the fog changes its kind, or into steps.
+// Splits rays into segments: at kinks of homogeneous and height fog, or into steps.
 #include "integrate/single_scattering/single_scattering.h"
 #include "volume/medium.h"
 
@@ -7,9 +7,9 @@
 
 namespace tyndall {
 namespace {
-constexpr double max_depth = 2; // optical depth between cuts
+constexpr double max_depth = 2; // maximum optical depth between cuts
 
-// Density of height fog changes by e^1.5 from one of these levels to the next.
+// Adds cuts at heights between which the density of height fog changes by a factor of e^1.5.
 void add_levels(const Medium& medium, const Ray& ray, Interval<double> inside, std::vector<double>& cuts) {
     const double dy = ray.direction.y, y = ray.origin.y;
     if (std::abs(dy) < 1e-12) return;
@@ -19,9 +19,10 @@ void add_levels(const Medium& medium, const Ray& ray, Interval<double> inside, s
     }
 }
 
-// Where the way from the ray to a light begins to leave a medium's box through another face: the light that fog lets
-// through has a kink there. With the way x + u·(light - far·x), far = 0 for suns, the faces f of axes i and j are met
-// at the same u where (f_i - x_i)(light_j - far·x_j) = (f_j - x_j)(light_i - far·x_i), which is linear in x.
+// Adds cuts where the path from the ray to a light starts to leave a medium's box through a different face, because the
+// transmittance to the light has a kink there. On the path x + u·(light - far·x), far = 0 for distant lights, the faces
+// f of axes i and j are hit at the same u where (f_i - x_i)(light_j - far·x_j) = (f_j - x_j)(light_i - far·x_i), which
+// is linear in x.
 void add_exits(const Medium& medium, const Light& light, const Ray& ray, Interval<double> inside,
                std::vector<double>& cuts) {
     const double far = is_distant(light) ? 0 : 1;
@@ -49,7 +50,7 @@ void add_exits(const Medium& medium, const Light& light, const Ray& ray, Interva
     }
 }
 
-// Divides low..high evenly so that no part holds more than a given optical depth.
+// Divides low..high into equal parts of at most max_depth optical depth, estimated at the midpoint.
 void divide(const SingleScattering& frame, const Ray& ray, double low, double high, std::vector<double>& cuts) {
     double extinction = 0;
     const vec3 middle = ray.at(static_cast<float>(0.5 * (low + high)));
@@ -59,7 +60,7 @@ void divide(const SingleScattering& frame, const Ray& ray, double low, double hi
     for (int i = 1; i <= parts; ++i) cuts.push_back(low + (high - low) * i / parts);
 }
 
-// Where fog is smooth but for these kinks.
+// Finds cuts for homogeneous and height fog, which is smooth between its kinks.
 void find_even_cuts(const SingleScattering& frame, const Ray& ray, std::vector<double>& cuts) {
     static thread_local std::vector<double> kinks;
     kinks.clear();
@@ -79,7 +80,7 @@ void find_even_cuts(const SingleScattering& frame, const Ray& ray, std::vector<d
         if (kinks[i] > kinks[i - 1]) divide(frame, ray, kinks[i - 1], kinks[i], cuts);
 }
 
-// The fog of a ray in three: the most steps are where the scene is when fog reaches far beyond it.
+// The fog of a ray in three parts: before, inside and beyond the scene, which gets most of the steps.
 struct Thirds {
     float at[4] = {};
 };
@@ -116,7 +117,7 @@ void find_steps(const SingleScattering& frame, std::span<const Ray> rays, RaySeg
         if (!(at[ray] > low[0][ray])) cuts.pieces[ray] = 0;
 }
 
-// The ends of the steps that a rule places; what lies between two steps is empty.
+// Finds cuts at the ends of the steps of a rule; gaps between steps are empty.
 void find_step_cuts(const SingleScattering& frame, const Ray& ray, std::vector<double>& cuts) {
     static thread_local std::vector<Step> steps;
     steps.clear();

@@ -1,4 +1,4 @@
-// What fog scatters towards sixteen eyes per metre (see base/simd/simd.h for how such files are compiled).
+// In-scattering per meter at sixteen points (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_INTEGRATE_SCATTERING_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_INTEGRATE_SCATTERING_SIMD_H
 #undef TYNDALL_INTEGRATE_SCATTERING_SIMD_H
@@ -18,7 +18,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// Of light of 1 from one side: Σ over media of albedo × extinction(medium) × phase function.
+// In-scattering of unit light from one direction: Σ over media of albedo × extinction(medium) × phase function.
 template<class Extinction>
 HWY_INLINE Vec3s scattering(const std::vector<Medium>& media, const Vec3s& position, const Floats& cosine,
                             const Extinction& extinction) {
@@ -41,7 +41,7 @@ HWY_INLINE Vec3s scattering(const std::vector<Medium>& media, const Floats& cosi
     return sum;
 }
 
-// Of one light: scattering × `amount` of it that would arrive without fog × transmittance of the fog on its way.
+// In-scattering from one light: `scattering` × `amount` of light arriving without fog × transmittance to the light.
 HWY_INLINE Vec3s scattered_light(const Light& light, const LightDepth& depth, const Vec3s& position,
                                  const Floats& amount, const Vec3s& scattering) {
     const Mask16 wanted = amount > 0.0f;
@@ -50,14 +50,14 @@ HWY_INLINE Vec3s scattered_light(const Light& light, const LightDepth& depth, co
     return light.filter && has_colors(*light.filter) ? sum * tint_at(light, position) : sum;
 }
 
-// What a medium sends on of emission and even light from all around, per unit of its extinction.
+// SIMD version of source_radiance(); leaves out emission unless `emits`.
 HWY_INLINE Vec3s source16(const Optics& optics, vec3 ambient, bool emits, const Vec3s& position) {
     if (!optics.albedo_field) return splat(emits ? source_radiance(optics, ambient) : optics.albedo * ambient);
     const vec3 own = emits ? optics.emission.radiance / optics.extinction : vec3(0);
     return albedo16(optics, position) * splat(ambient) + splat(own);
 }
 
-// Emission, ambient light and, with a grid, light that has been scattered before: none has a side it comes from.
+// Emission, scattered ambient light and, with a fluence grid, multiple scattering, per meter.
 template<class Extinction>
 HWY_INLINE Vec3s glow(const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
                       const Vec3s& direction, const Extinction& extinction) {
@@ -67,7 +67,7 @@ HWY_INLINE Vec3s glow(const Snapshot& snapshot, const FluenceGrid* fluence, cons
     return fluence ? sum + scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
 }
 
-// One kind of that light alone.
+// One kind of that light only.
 template<class Extinction>
 HWY_INLINE Vec3s glow_of(OtherLight light, const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
                          const Vec3s& direction, const Extinction& extinction) {

@@ -1,4 +1,4 @@
-// Shadows at sixteen points by rays towards a light (see base/simd/simd.h for how such files are compiled).
+// Shadows at sixteen points by rays toward a light (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_INTEGRATE_SHADOW_RAYS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_INTEGRATE_SHADOW_RAYS_SIMD_H
 #undef TYNDALL_INTEGRATE_SHADOW_RAYS_SIMD_H
@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Shadow rays from points to a light's centre.
+// Sets up shadow rays from points to a light's center.
 HWY_INLINE void aim_at_center(const Vec3s& position, const LightSamples& light_at, const Mask16& wanted,
                               Occluders::ShadowRays& rays) {
     store(position.x, rays.ox), store(position.y, rays.oy), store(position.z, rays.oz);
@@ -26,14 +26,14 @@ HWY_INLINE void aim_at_center(const Vec3s& position, const LightSamples& light_a
     for (size_t lane = 0; lane < 16; ++lane) rays.active[lane] = is_wanted[lane] > 0 ? -1 : 0, rays.t_min[lane] = 0;
 }
 
-// Turns the ray of a lane to the point of a soft light that u picks.
+// Redirects the ray of a lane to the point on a soft light selected by u.
 inline void aim_at_point(const Light& light, vec2 u, size_t lane, Occluders::ShadowRays& rays) {
     const Ray ray = ray_to_light(light, vec3(rays.ox[lane], rays.oy[lane], rays.oz[lane]), u);
     rays.dx[lane] = ray.direction.x, rays.dy[lane] = ray.direction.y, rays.dz[lane] = ray.direction.z;
     rays.t_max[lane] = ray.t_max;
 }
 
-// Turns the shadow rays to the k-th random points of a soft light. `key` gives a number for each lane.
+// Redirects the shadow rays to the k-th random points on a soft light. key(lane) is the random seed of a lane.
 template<class Key> void aim_at_points(const Light& light, uint32_t k, const Key& key, Occluders::ShadowRays& rays) {
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!rays.active[lane]) continue;
@@ -42,8 +42,8 @@ template<class Key> void aim_at_points(const Light& light, uint32_t k, const Key
     }
 }
 
-// Share of a light that surfaces let through to the wanted points, by one packet of shadow rays, or by one for each of
-// `points` points of a soft light.
+// Transmission of surfaces between a light and the wanted points, by one packet of shadow rays, or for a soft light by
+// the mean over `points` packets.
 template<class Key>
 Floats share_by_rays(const Occluders& occluders, const Light& light, const Vec3s& position,
                      const LightSamples& light_at, const Mask16& wanted, int points, const Key& key) {

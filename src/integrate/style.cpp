@@ -20,7 +20,7 @@ Medium at_mean_density(const Medium& medium) {
     return even;
 }
 
-// A snapshot's media all take light away.
+// Removes media without extinction, which a snapshot must not contain.
 void drop_clear(std::vector<Medium>& media) {
     std::erase_if(media, [](const Medium& medium) { return !(grey_extinction(medium.optics) > 0); });
 }

@@ -1,4 +1,4 @@
-// Artist's controls at sixteen points, inside kernels compiled per instruction set (base/simd/simd.h says how).
+// Artistic controls at sixteen points, for kernels compiled per instruction set (see base/simd/simd.h).
 #if defined(TYNDALL_INTEGRATE_STYLE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_INTEGRATE_STYLE_SIMD_H
 #undef TYNDALL_INTEGRATE_STYLE_SIMD_H

@@ -1,4 +1,4 @@
-// Terms of the light in fog that all techniques share, each a switch or a choice of how it is found.
+// Terms of the light in fog that all techniques share, each with a switch or a choice of method.
 #pragma once
 #include "base/math.h"
 #include "trace/transmittance/light_transmittance.h"
@@ -8,22 +8,22 @@ struct Snapshot;
 
 struct TermSettings {
     bool phase = true;         // off: isotropic
-    bool heterogeneity = true; // off: bricks at their mean density
+    bool heterogeneity = true; // off: grids at their mean density
     bool emission = true;
-    bool ambient = true; // with the environment's light
+    bool ambient = true; // including the environment's light
     LightTransmittance light = LightTransmittance::grid;
     int light_resolution = 64; // cells across the fog in the light grids
-    int light_points = 1;      // of a soft light, asked for shadows at once
+    int light_points = 1;      // shadow sample points per soft light
 };
 
-// The snapshot without the terms of fog that are off.
+// The snapshot without the terms that are switched off.
 Snapshot with_terms(Snapshot snapshot, const TermSettings& terms);
 
-// Ambient light in fog, the environment's mean included; and a snapshot with that, for what knows no environment.
+// Ambient light in fog including the environment's mean, and a snapshot with it, for techniques without environments.
 vec3 mean_ambient(const Snapshot& snapshot);
 Snapshot with_mean_environment(Snapshot snapshot);
 
-// How light that nothing looks up before the camera is dimmed: grids before the lights instead.
+// For techniques without camera froxels: light grids replace them.
 inline LightTransmittance without_froxels(LightTransmittance light) {
     return light == LightTransmittance::froxel ? LightTransmittance::grid : light;
 }

@@ -10,7 +10,7 @@ namespace tyndall {
 namespace {
 bool is_ball(const AreaShape& shape) { return shape.kind == LightKind::sphere; }
 
-// Lambert's cosine, ahead or to both sides, as a measured lamp would have it.
+// Lambert's cosine to the front or to both sides, as an IES profile.
 std::shared_ptr<const IesProfile> cosine_profile(bool both_sides) {
     IesFile file;
     file.horizontal = {0};
@@ -22,7 +22,7 @@ std::shared_ptr<const IesProfile> cosine_profile(bool both_sides) {
     return make_ies_profile(file, both_sides ? "cosine to both sides" : "cosine");
 }
 
-// Whether the point is on a side that glows.
+// Whether the point is on an emitting side.
 bool is_before(const AreaShape& shape, vec3 point) {
     if (is_ball(shape)) return glm::distance(point, shape.center) > shape.half.x;
     const float height = glm::dot(point - shape.center, shape.normal);
@@ -30,7 +30,7 @@ bool is_before(const AreaShape& shape, vec3 point) {
 }
 
 constexpr double small = 1e-6; // steradians, below which doubles do not resolve the angles of a rectangle
-constexpr float near = 3;      // radii of a disc within which the square around it is sampled
+constexpr float near = 3;      // radii of a disc within which it is sampled through its bounding square
 
 bool is_near_disc(const AreaShape& shape, vec3 point) {
     return shape.kind == LightKind::disc && glm::distance(point, shape.center) <= near * shape.half.x;
@@ -52,7 +52,7 @@ AreaSample sample_ball(const AreaShape& shape, vec3 point, vec2 u) {
     return {ray.direction, ray.t_max, static_cast<float>(ball_steradians(shape, point))};
 }
 
-// Where points of the face are picked evenly.
+// 1 / pdf over solid angle when points of the face are sampled uniformly by area.
 float steradians_by_area(const AreaShape& shape, vec3 direction, float distance) {
     return face_area(shape) * std::abs(glm::dot(direction, shape.normal)) / (distance * distance);
 }
@@ -63,7 +63,7 @@ AreaSample towards(const AreaShape& shape, vec3 point, vec2 place) {
     return {offset / distance, distance, steradians_by_area(shape, offset / distance, distance)};
 }
 
-// To a point of the face, or of the square around a disc.
+// Samples a point of the rectangle, or of the bounding square of a disc.
 AreaSample sample_rectangle(const AreaShape& shape, vec3 point, vec2 u) {
     const SphericalRectangle seen = seen_from(shape, point);
     const glm::dvec2 place =
@@ -84,10 +84,10 @@ AreaSample sample_disc(const AreaShape& shape, vec3 point, vec2 u) {
     return sample;
 }
 
-// What a picture's light adds up to, in units of the face: halves along right and up.
+// Moments of a texture's light; positions in units of the half-extents along right and up.
 struct PictureSums {
     dvec3 mean{0};
-    glm::dvec2 middle{0}, square{0}; // of luminance
+    glm::dvec2 middle{0}, square{0}; // centroid and second moment of luminance
 };
 
 PictureSums sums_of(const Gobo& picture) {
@@ -108,7 +108,7 @@ PictureSums sums_of(const Gobo& picture) {
     return sums;
 }
 
-// The lamp goes to the middle of the picture's light, and is as bright as its mean.
+// Moves the light to the centroid of the texture's luminance and scales it by the texture's mean.
 void show_picture(AreaShape& shape, Light& light) {
     const PictureSums sums = sums_of(*shape.picture);
     for (int c = 0; c < 3; ++c) {
@@ -160,7 +160,7 @@ vec3 face_picture(const AreaShape& shape, vec3 at) {
     if (!shape.picture) return vec3(1);
     const vec3 off = at - shape.center;
     const vec2 place = 0.5f - 0.5f * vec2(glm::dot(off, shape.right), glm::dot(off, shape.up)) / shape.half;
-    const vec2 edge = 0.5f / shape.picture->levels[0].texels; // texels at the edge reach up to it
+    const vec2 edge = 0.5f / shape.picture->levels[0].texels; // the outermost texels extend to the edge
     const vec2 inside = glm::clamp(place, edge, 1.0f - edge);
     return shape.picture_scale * vec3(gobo_at(*shape.picture, inside.x, inside.y));
 }
@@ -216,6 +216,6 @@ double far_enough(const AreaShape& shape, double share) {
         const double middle = 0.5 * (low + high);
         (off(middle) ? low : high) = middle;
     }
-    return std::max(size, std::sqrt(double{shape.spread}) * high); // the error grows with the light's mean square
+    return std::max(size, std::sqrt(double{shape.spread}) * high); // the error grows with the variance of the emission
 }
 }

@@ -1,4 +1,4 @@
-// What lies behind everything.
+// The kinds of background behind the scene.
 #pragma once
 
 namespace tyndall {

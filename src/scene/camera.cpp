@@ -1,4 +1,4 @@
-// Camera frames and the rays of a picture.
+// Camera frames, camera rays and projection.
 #include "scene/camera.h"
 
 namespace tyndall {
@@ -9,7 +9,7 @@ Camera look_at(vec3 position, vec3 target, vec3 up, float vertical_fov) {
     const vec3 towards = target - position;
     if (glm::dot(towards, towards) > 0) camera.forward = glm::normalize(towards);
 
-    // Straight up or down, `up` says nothing: any direction across will do.
+    // If `up` is parallel to the view, any perpendicular direction will do.
     vec3 right = glm::cross(camera.forward, up);
     if (!(glm::dot(right, right) > 1e-12f * glm::dot(up, up))) {
         vec3 across;
@@ -20,7 +20,7 @@ Camera look_at(vec3 position, vec3 target, vec3 up, float vertical_fov) {
     return camera;
 }
 
-// tan(fov / 2), for as many rays of one camera as follow one another.
+// tan(fov / 2), cached for consecutive rays of one camera.
 static float half_slope(float vertical_fov) {
     static thread_local float known = 0, slope = 0;
     if (known != vertical_fov) known = vertical_fov, slope = std::tan(0.5f * vertical_fov);

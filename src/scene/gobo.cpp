@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-// A picture of `texels` texels with its border, all black.
+// A level of `texels` texels plus its border, all black.
 Gobo::Level black_level(vec2 texels, int planes) {
     Gobo::Level level;
     level.texels = texels;
@@ -17,7 +17,7 @@ Gobo::Level black_level(vec2 texels, int planes) {
     return level;
 }
 
-// The means of 2 × 2 texels; beyond the picture it is black.
+// Averages blocks of 2 × 2 texels; black beyond the image.
 Gobo::Level halved(const Gobo::Level& fine, int planes) {
     Gobo::Level coarse = black_level(0.5f * fine.texels, planes);
     for (int plane = 0; plane < planes; ++plane) {
@@ -69,7 +69,7 @@ std::shared_ptr<Gobo> make_gobo(const Image<vec3>& image) { return gobo_of({imag
 
 dvec3 gobo_at(const Gobo& gobo, double u, double v) {
     const Gobo::Level& level = gobo.levels[0];
-    // Texel centres lie at half numbers; the border comes first.
+    // Texel centers lie at half-integers; the border comes first.
     const auto place = [](double at, float texels, int size) {
         return std::clamp(at * texels + 0.5, 0.0, static_cast<double>(size - 1));
     };

@@ -9,13 +9,13 @@ namespace tyndall {
 namespace {
 float between(float a, float b, float share) { return a + share * (b - a); }
 vec3 between(vec3 a, vec3 b, float share) { return a + share * (b - a); }
-quat between(quat a, quat b, float share) { return glm::slerp(a, b, share); } // the short way round
+quat between(quat a, quat b, float share) { return glm::slerp(a, b, share); } // along the shorter arc
 
 float unit(float value) { return value; }
 vec3 unit(vec3 value) { return value; }
 quat unit(quat value) { return glm::normalize(value); }
 
-// A moment brought between the first and the last key.
+// Clamps or wraps a time into the range of the keys.
 double within(double seconds, double first, double last, bool loop) {
     if (!loop || last <= first) return std::clamp(seconds, first, last);
     const double turns = (seconds - first) / (last - first);

@@ -1,4 +1,4 @@
-// A value that may change over time: one value, or keys with an interpolation.
+// A value that may be animated: a constant, or keyframes with an interpolation.
 #pragma once
 #include "base/math.h"
 

@@ -4,7 +4,7 @@
 
 namespace tyndall {
 namespace {
-// The square onto the disc, in rings and equal areas (Shirley and Chiu 1997).
+// Concentric map from the unit square to the unit disc, which preserves area (Shirley and Chiu 1997).
 vec2 disc_point(vec2 u) {
     const vec2 at = 2.0f * u - 1.0f;
     if (at == vec2(0)) return at;
@@ -14,7 +14,7 @@ vec2 disc_point(vec2 u) {
     return radius * vec2(std::cos(angle), std::sin(angle));
 }
 
-// One of the triangles between middle and neighbouring corners, and a point in it.
+// Picks one of the triangles between the center and two adjacent corners, and a point in it.
 vec2 polygon_point(int corners, float turn, vec2 u) {
     const float place = u.x * static_cast<float>(corners), first = std::min(std::floor(place), float(corners - 1));
     const float step = 2 * pi / static_cast<float>(corners), angle = turn + step * first;

@@ -1,4 +1,4 @@
-// A light at one moment, as KHR_lights_punctual with soft edges, and what of it reaches a point.
+// A light at one time, as in KHR_lights_punctual plus soft edges, and the light it sends to a point.
 #pragma once
 #include "base/math.h"
 #include "scene/light_kind.h"
@@ -14,45 +14,45 @@ struct Light {
     std::string name;
     LightKind kind = LightKind::point;
     vec3 position{0};                          // point, spot
-    vec3 direction{0, -1, 0};                  // unit, the way the light travels: spot axis, sun
-    vec3 intensity{1};                         // candela (point, spot) or lux (sun), colour included
+    vec3 direction{0, -1, 0};                  // unit, direction of travel: spot axis, sun
+    vec3 intensity{1};                         // candela (point, spot) or lux (sun), including color
     float volume_scale = 1;                    // multiplies the light in fog
     float surface_scale = 1;                   // multiplies the light on surfaces
     float inner_cone = 0, outer_cone = pi / 4; // half angles of a spot
-    float range = infinity;                    // metres; the light fades to 0 there
-    float radius = 0;                          // metres; point, spot: soft shadows, and 1/r² is capped inside
-    float core = 1e-4f;                        // metres; 1/r² is capped inside of this in any case
+    float range = infinity;                    // meters; the light fades to 0 there
+    float radius = 0;                          // meters; point, spot: soft shadows, and 1/r² is capped inside
+    float core = 1e-4f;                        // meters; 1/r² is always capped inside this
     float angle = 0;                           // radians, half angle of the sun's disc
-    std::shared_ptr<const LightFilter> filter; // point, spot: what of the intensity goes where; null = all everywhere
-    // Rectangle, disc, sphere: what glows; null = none. All else is then that of a lamp in its middle that stands for
-    // it (scene/area_shape.h), for whom its size does not matter.
+    std::shared_ptr<const LightFilter> filter; // point, spot: directional factors on the intensity; null = none
+    // Rectangle, disc, sphere: the emitting shape; null = none. All other members then describe the light that
+    // approximates it (stand_for() in scene/area_shape.h), for callers to which its size does not matter.
     std::shared_ptr<const AreaShape> area;
     bool shadows = true;
-    int casters = -1, lit = -1; // surfaces that shadow it, and that it lights: sets of the snapshot; -1 = all
+    int casters = -1, lit = -1; // surfaces that shadow it and that it lights: indices of snapshot sets; -1 = all
 };
 
-// Whether its shadows have soft edges: each shadow ray then goes to another point of the light.
+// Whether its shadows have soft edges: each shadow ray then goes to a different point of the light.
 bool is_soft(const Light& light);
 
-// What the scene has to hold of it: the place of a light that has one.
+// The light's contribution to the scene's bounds: its position; empty for suns.
 Box light_bounds(const Light& light);
 
-// What reaches a point with nothing in the way: irradiance on a surface facing the light (or lux for fog).
+// Unoccluded light at a point: irradiance on a surface facing the light (or lux for fog).
 struct LightSample {
     vec3 irradiance{0};
     vec3 to_light{0, 1, 0};    // unit
-    float distance = infinity; // metres, infinite for the sun
+    float distance = infinity; // meters, infinite for the sun
 };
 LightSample arrival(const Light& light, const vec3& point);
 
-// The ray to a point on the light, picked by two numbers in [0,1): uniform over the solid angle that the light's ball
-// or disc is seen under; its centre when the light is a point. Ends just before the light.
+// The shadow ray to a point on the light, sampled from u in [0,1)²: uniform over the solid angle of the light's sphere
+// or disc, or its center for a point light. Ends just before the light.
 Ray ray_to_light(const Light& light, vec3 point, vec2 u);
 
-// Where 1/r² is capped.
+// The radius inside which 1/r² is capped.
 inline float capped_radius(const Light& light) { return std::max(light.radius, light.core); }
 
-// KHR_lights_punctual's window: 1 near the light, 0 at range.
+// KHR_lights_punctual's range window: 1 near the light, 0 at the range.
 inline float range_window(float distance, float range) {
     if (std::isinf(range)) return 1;
     const float x = distance / range, x4 = x * x * x * x;

@@ -1,5 +1,5 @@
-// The kinds of light, those of KHR_lights_punctual and faces that glow, and what is true of all lights of a kind. What
-// a kind does to light is in scene/lights.
+// The kinds of light: those of KHR_lights_punctual and area lights, with the traits of each kind. Their functions are
+// in scene/lights.
 #pragma once
 #include <string_view>
 
@@ -9,10 +9,10 @@ enum class LightKind { point, spot, sun, rectangle, disc, sphere };
 struct LightTraits {
     std::string_view name, noun; // in scene files and in messages
     std::string_view unit;       // of its intensity
-    bool distant = false;        // parallel light from far away: no place, no falloff
+    bool distant = false;        // parallel light from infinity: no position, no falloff
     bool aimed = false;          // shines in a direction
-    bool cone = false;           // within inner_cone and outer_cone only
-    bool area = false;           // a face that glows evenly: scene/area_shape.h
+    bool cone = false;           // limited by inner_cone and outer_cone
+    bool area = false;           // emits from a surface: scene/area_shape.h
 };
 inline constexpr LightTraits light_kinds[] = {
     {.name = "point", .noun = "point light", .unit = "candela"},
@@ -24,7 +24,7 @@ inline constexpr LightTraits light_kinds[] = {
 };
 constexpr const LightTraits& traits_of(LightKind kind) { return light_kinds[static_cast<int>(kind)]; }
 
-// Of a Light or a LightSource.
+// For a Light or a LightSource.
 template<class T> constexpr bool is_distant(const T& light) { return traits_of(light.kind).distant; }
 template<class T> constexpr bool is_aimed(const T& light) { return traits_of(light.kind).aimed; }
 template<class T> constexpr bool has_cone(const T& light) { return traits_of(light.kind).cone; }

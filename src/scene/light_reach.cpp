@@ -7,7 +7,7 @@ Interval<double> inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 or
     constexpr double endless = std::numeric_limits<double>::infinity();
     const double length = glm::length(direction);
     const dvec3 d = direction / length;
-    // From the point next to the apex: nothing large cancels there.
+    // Parametrized from the point nearest to the apex, so that no large terms cancel.
     const double nearest = glm::dot(apex - origin, d);
     const dvec3 p = (origin - apex) + nearest * d;
     const double dv = glm::dot(d, axis), pv = glm::dot(p, axis), pp = glm::dot(p, p);
@@ -15,7 +15,7 @@ Interval<double> inside_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 or
     const auto to_t = [&](double s) { return (nearest + s) / length; };
     const auto inside = [&](double s) { return pv + s * dv >= cosine * std::sqrt(pp + s * s); };
 
-    // Through the apex the cone is met there or nowhere.
+    // A line through the apex crosses the cone only there.
     const double far = glm::length(apex - origin);
     if (pp <= 1e-24 * far * far || pp == 0) {
         if (std::abs(dv) < cosine) return {};

@@ -1,4 +1,4 @@
-// How files of scenes are to be understood.
+// Options for reading scene files.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,7 +8,7 @@ enum class LightUnits { spec, unitless, raw };
 inline const std::vector<std::string> light_unit_names{"spec", "unitless", "raw"};
 
 struct LoadOptions {
-    // Of the glTF's lights: candela and lux; Blender's "unitless" (683 lm/W missing); Blender's "raw" watts
+    // Units of the glTF's lights: candela and lux; Blender's "unitless" (683 lm/W missing); Blender's "raw" watts
     // (points and spots also spread over the sphere, 683 / 4 pi).
     LightUnits light_units = LightUnits::spec;
 };

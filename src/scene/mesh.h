@@ -1,4 +1,4 @@
-// Triangles and what they are made of.
+// Triangle meshes, their materials and textures.
 #pragma once
 #include "base/image.h"
 
@@ -11,12 +11,12 @@ enum class AlphaMode { opaque, mask, blend };
 
 struct Texture {
     std::string name;
-    Image<vec4> texels; // linear colour, straight alpha; empty when the file could not be used
+    Image<vec4> texels; // linear color, straight alpha; empty when the file could not be used
     bool repeat_u = true, repeat_v = true, mirror_u = false, mirror_v = false, nearest = false;
     mat3 uv_transform{1}; // applied to uv first (KHR_texture_transform)
 };
 
-// Bilinear texel (nearest when asked); v runs down as in glTF.
+// Bilinear lookup (or nearest, if the texture asks for it); v runs down as in glTF.
 vec4 sample_texture(const Texture& texture, vec2 uv);
 
 struct Material {
@@ -28,10 +28,10 @@ struct Material {
     int emission_texture = -1;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;
-    bool double_sided = false; // only shading normals care; every face casts shadows
+    bool double_sided = false; // affects shading normals only; every face casts shadows
 };
 
-// What a mesh's vertices get besides, times a weight; empty = nothing.
+// Offsets added to a mesh's vertices, times a weight; empty = none.
 struct MorphTarget {
     std::vector<vec3> positions, normals;
 };
@@ -41,12 +41,12 @@ struct Mesh {
     std::string name;
     std::vector<vec3> positions, normals;
     std::vector<vec2> uvs;
-    std::vector<vec3> colors; // vertex colours times base_color; empty = white
+    std::vector<vec3> colors; // vertex colors times base_color; empty = white
     std::vector<glm::uvec3> triangles;
     int material = -1; // -1 = white Lambert
     std::vector<MorphTarget> targets;
-    // Of each position, so many joints of a skin and how much it follows each: weights that add up to 1.
-    size_t influences = 0, joint_count = 0; // joint_count: of the skin, at least
+    // Skinning: each position follows `influences` joints, with weights that add up to 1.
+    size_t influences = 0, joint_count = 0; // joint_count: joints that the skin must have
     std::vector<uint16_t> joints;
     std::vector<float> joint_weights;
 };

@@ -1,4 +1,4 @@
-// How fog spreads light, as a scene file says it: by a name, its g beside it, or by an object of its own.
+// A phase function as a scene file states it: by name with the medium's g, or as an object with its own parameters.
 #pragma once
 #include "scene/keyed.h"
 #include "volume/phase.h"
@@ -9,17 +9,17 @@
 namespace tyndall {
 struct PhaseSource {
     PhaseKind kind = PhaseKind::henyey_greenstein;
-    bool own_numbers = false;                // an object; else g is that of the medium
+    bool own_numbers = false;                // stated as an object; else g is the medium's
     Keyed<float> g{0.0f}, alpha{0.0f};       // Henyey-Greenstein, Draine
-    Keyed<float> droplet_diameter{10.0f};    // mie: micrometres
-    Keyed<float> weight{0.5f};               // mix: share of the first
+    Keyed<float> droplet_diameter{10.0f};    // mie: micrometers
+    Keyed<float> weight{0.5f};               // mix: weight of the first lobe
     std::vector<PhaseSource> lobes;          // mix: two
     std::shared_ptr<const PhaseShape> shape; // table, legendre
 
-    // Whether the medium's g counts.
+    // Whether the medium's g is used.
     bool takes_medium_g() const { return !own_numbers && takes_g(kind); }
 };
 
-// With the medium's g at that moment, which counts where takes_medium_g().
+// The phase function at a time; `g` is the medium's at that time, used if takes_medium_g().
 Phase phase_at(const PhaseSource& source, float g, double seconds);
 }

@@ -6,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-// Where the joints of a vertex take it, each as much as its weight says.
+// The joint matrices of a vertex, blended by its weights.
 mat4 skin_matrix(const Mesh& mesh, const Pose& pose, size_t vertex) {
     mat4 sum(0);
     const size_t first = vertex * mesh.influences;

@@ -1,4 +1,4 @@
-// Places of a scene's parts.
+// Transforms, files and bounds of a scene's parts.
 #include "scene/scene.h"
 
 #include "scene/pose.h"

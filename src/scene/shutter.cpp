@@ -5,7 +5,7 @@
 
 namespace tyndall {
 namespace {
-// Where in a stretch that goes straight from a to b, 0..1, the area under it reaches `area`.
+// The position in 0..1 up to which the area under a line from a to b is `area`.
 double place_in(double a, double b, double area) {
     const double root = std::sqrt(std::max(a * a + 2 * (b - a) * area, 0.0));
     return a + root > 0 ? std::clamp(2 * area / (a + root), 0.0, 1.0) : 0.0;
@@ -20,7 +20,7 @@ std::vector<double> shutter_times(const Shutter& shutter, int count) {
 
     std::vector<double> times;
     size_t at = 0;
-    double before = 0; // area of the stretches passed
+    double before = 0; // area of the segments passed
     for (int k = 0; k < count; ++k) {
         const double wanted = (k + 0.5) / count * all;
         for (double area; at + 1 < stretches && before + (area = 0.5 * (curve[at] + curve[at + 1])) < wanted; ++at)

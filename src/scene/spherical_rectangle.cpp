@@ -11,7 +11,7 @@ SphericalRectangle::SphericalRectangle(dvec3 center, dvec3 right, dvec3 up, glm:
     height = -std::abs(glm::dot(offset, glm::cross(right, up)));
     if (height == 0) return;
 
-    // The planes through the point and each side, and the angles between neighbours.
+    // Normals of the planes through the point and each side, and the angles between adjacent planes.
     const dvec3 corners[] = {
         {low.x, low.y, height}, {high.x, low.y, height}, {high.x, high.y, height}, {low.x, high.y, height}};
     dvec3 normals[4];

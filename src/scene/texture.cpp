@@ -1,11 +1,11 @@
-// Looking up a texel.
+// Texture lookup.
 #include "scene/mesh.h"
 
 #include <cassert>
 
 namespace tyndall {
 namespace {
-// The texel index a coordinate stands for once it is repeated, mirrored or held at the edge.
+// Texel index after repeating, mirroring or clamping to the edge.
 int wrapped(int index, int size, bool repeat, bool mirror) {
     if (!repeat && !mirror) return std::clamp(index, 0, size - 1);
     const int period = mirror ? 2 * size : size;
@@ -13,7 +13,7 @@ int wrapped(int index, int size, bool repeat, bool mirror) {
     return within < size ? within : 2 * size - 1 - within;
 }
 
-// Texel coordinates of any number: far away or not a number at all, some texel is returned.
+// Texel coordinate of any number: huge values and NaNs also give some valid texel.
 float texel_coordinate(float uv, int size, bool repeat, bool mirror) {
     if (!std::isfinite(uv)) return 0;
     if (mirror)
@@ -36,7 +36,7 @@ vec4 sample_texture(const Texture& texture, vec2 uv) {
     };
     if (texture.nearest) return texel(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
 
-    // Texel centres lie at half numbers.
+    // Texel centers lie at half-integers.
     const float left = std::floor(x - 0.5f), upper = std::floor(y - 0.5f);
     const float across = x - 0.5f - left, down = y - 0.5f - upper;
     const int i = static_cast<int>(left), j = static_cast<int>(upper);

@@ -1,11 +1,11 @@
-// What is seen where there is no surface: a colour, a sky gradient or a picture.
+// The background, seen where a ray hits no surface: a color, a sky gradient or an image.
 #include "base/image.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"
 
 namespace tyndall {
 namespace {
-// Bilinear between pixel centres; the edges hold, or wrap around sideways.
+// Bilinear lookup between pixel centers; clamps at the edges, or wraps around horizontally.
 vec3 sample_image(const Image<vec3>& image, vec2 uv, bool wrap) {
     const vec2 position = uv * vec2(image.size) - 0.5f;
     const vec2 corner = glm::floor(position), share = position - corner;

@@ -1,4 +1,4 @@
-// Media of a scene at one moment: optics evaluated, files read, recipes grown, transforms folded in.
+// Builds a scene's media at one moment: evaluates optics, reads files, generates fog from recipes, applies transforms.
 #include "trace/fog.h"
 #include "base/error.h"
 #include "base/io/cache_folder.h"
@@ -50,12 +50,12 @@ Optics optics_at(const MediumSource& source, double seconds) {
             phase_at(source.phase, source.g.at(seconds), seconds), source.emission.at(seconds)};
 }
 
-// Fog as cache files keep it.
+// Fog as stored in cache files.
 struct StoredFog {
-    bool any = false;        // fog at all; else no bricks
+    bool any = false;        // false = no fog, and no bricks
     dmat4 index_to_world{1}; // before the medium's transform
     BrickPool bricks;
-    std::string note; // what was mended in its file
+    std::string note; // what was repaired when its file was read
 };
 
 template<class Visit> void fields(StoredFog& fog, Visit& visit) {
@@ -86,14 +86,14 @@ FogSource grown(const MediumSource& source, double seconds, CacheFolder* files, 
     return source_of(found_or_made<StoredFog>(files, "bricks", key, grow_fog), key, files ? key : "");
 }
 
-// What reading a medium's files takes beside them.
+// Shared arguments for reading a medium's files.
 struct Reading {
     MissingFrame missing;
     CacheFolder* files;
     std::vector<std::string>& notes;
 };
 
-// The fog of a frame's file, from among `known` where it is there.
+// The fog in a frame's file, taken from `known` if it is there.
 FogSource read(const MediumSource& source, int frame, const Reading& reading, std::span<const FogSource> known) {
     const auto file = sequence_file(source.sequence, frame, reading.missing);
     if (!file) return {};
@@ -115,7 +115,7 @@ FogSource read(const MediumSource& source, int frame, const Reading& reading, st
 
 std::string content_of(const FogSource& source) { return source.bricks ? source.bricks->content : "none"; }
 
-// The fog between two files, or beside one; files that are read are left in `frames`.
+// Fog at a time between frames: two files blended, or one moved by its velocities. Stores the files read in `frames`.
 FogSource read_between(const MediumSource& source, const SequenceTime& time, const Reading& reading,
                        const FogSource& before, std::span<const FogSource> known, FogFrames& frames) {
     const auto of_frame = [&](int frame) {
@@ -140,7 +140,7 @@ FogSource read_between(const MediumSource& source, const SequenceTime& time, con
     return source_of(fog, key, content);
 }
 
-// The bricks where the medium's transform puts them; the densities stay shared.
+// The bricks with the medium's transform applied; shares the densities.
 std::shared_ptr<const BrickPool> placed_bricks(const FogSource& source, const mat4& matrix) {
     if (matrix == mat4(1)) return source.bricks;
     auto moved = std::make_shared<BrickPool>(*source.bricks);
@@ -150,7 +150,7 @@ std::shared_ptr<const BrickPool> placed_bricks(const FogSource& source, const ma
     return moved;
 }
 
-// A medium's files at a moment, and what they were before.
+// A medium's files at a moment, and those of the previous moment.
 struct MovingFiles {
     SequenceTime time;
     const FogFrames* before = nullptr;
@@ -176,7 +176,7 @@ FogSource fog_source(const Scene& scene, const MediumSource& source, Moment mome
     return result;
 }
 
-// Fog given by a formula: its box moves, its height does not.
+// Analytic fog: the medium's transform moves its box, not its height falloff.
 void add_analytic(const Scene& scene, const MediumSource& source, double seconds, Medium& medium) {
     const mat4 matrix = checked_matrix(scene, source, seconds);
     medium.density.kind = source.kind == MediumKind::height ? DensityKind::height : DensityKind::homogeneous;
@@ -188,7 +188,7 @@ void add_analytic(const Scene& scene, const MediumSource& source, double seconds
 }
 }
 
-// Interval arithmetic per axis: 0 · infinity is 0 here, as a coefficient of 0 means that the axis has no say.
+// Interval arithmetic per axis. 0 · infinity counts as 0, as a zero coefficient means that the axis has no effect.
 Box moved_box(const mat4& matrix, const Box& box) {
     Box result{vec3(matrix[3]), vec3(matrix[3])};
     for (int row = 0; row < 3; ++row)
@@ -202,7 +202,7 @@ Box moved_box(const mat4& matrix, const Box& box) {
 }
 
 namespace {
-// Fog that dims light or emits it evenly, as far as the medium says so. False when there is none at this moment.
+// Sets a medium's density and bounds. Returns false if it has no fog at this moment.
 bool find_fog(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
               const FogSource& before, MovingFiles& files, Snapshot& snapshot, Medium& medium) {
     if (source.kind != MediumKind::noise && source.kind != MediumKind::vdb) {
@@ -257,7 +257,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
 }
 
 namespace {
-// The media from `first` on, which a source has added, as each channel meets them.
+// Appends the media from `first` on, which `source` added, to each channel's list, with that channel's extinction.
 void add_to_channels(const MediumSource& source, double seconds, size_t first, Snapshot& snapshot) {
     for (size_t c = 0; c < 3; ++c) {
         std::vector<Medium>& media = snapshot.channel_media[c];

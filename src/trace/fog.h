@@ -6,22 +6,22 @@ namespace tyndall {
 struct FogRecipe;
 struct MediumSource;
 
-// Of fog that emits and dims nothing, 1/m. Kernels divide emission by extinction, and multiply by it again: any value
-// does that is nothing over the longest way.
+// Extinction of fog that only emits, 1/m. Kernels divide emission by extinction and later multiply by it, so any value
+// works that is negligible over the longest path.
 inline constexpr float min_extinction = 1e-20f;
 
-// Fills media, fog_sources and notes of `snapshot`. Media without extinction are left out. `previous` (may be null)
-// lends bricks made from the same file or recipe. Throws Error.
+// Fills media, channel_media, fog_sources and notes of `snapshot`. Media that neither attenuate nor emit light are left
+// out. Reuses bricks of `previous` (may be null) made from the same file or recipe. Throws Error.
 void add_media(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing, Snapshot& snapshot);
 
-// The recipe that a medium is grown from, and what it is at a moment: the same key, the same fog.
+// The recipe that a medium is generated from, and a key of its state at a moment: equal keys mean equal fog.
 FogRecipe grown_recipe(const MediumSource& source);
 std::string growth_key(const FogRecipe& recipe, double seconds);
 
-// How fast fog of a recipe changes, metres per second, about: by wind or the rise of its fire, by swirls around their
-// middle, and by gradients that evolve through a cell a turn. 0 where it stands still: it is grown once.
+// Approximate speed at which a recipe's fog changes, meters per second: by wind or rising fire, by noise gradients that
+// evolve through one cell per turn, and by swirl. 0 = static fog, generated once.
 float recipe_speed(const FogRecipe& recipe);
 
-// The smallest box around an affinely moved box; unbounded directions stay so.
+// The smallest box around an affinely transformed box; unbounded directions stay unbounded.
 Box moved_box(const mat4& matrix, const Box& box);
 }

@@ -17,11 +17,11 @@
 
 namespace tyndall {
 namespace {
-// A property as cache files keep it.
+// A property as stored in cache files.
 struct StoredProperty {
-    std::vector<BrickPool> pools; // of the channels, then where there is a color
-    std::vector<dmat4> places;    // of each
-    std::string note;             // what was mended in its file
+    std::vector<BrickPool> pools; // the channels; for colors, then a mask of voxels that have one
+    std::vector<dmat4> places;    // index_to_world of each pool
+    std::string note;             // what was repaired when its file was read
 };
 
 template<class Visit> void fields(StoredProperty& property, Visit& visit) {
@@ -31,7 +31,7 @@ template<class Visit> void fields(StoredProperty& property, Visit& visit) {
     for (BrickPool& pool : property.pools) fields(pool, visit);
 }
 
-// What a property is: numbers, of which there is a most; or colors, which may be shares.
+// What a property holds: scalars, colors, or colors limited to 1.
 enum class Quantity { number, color, share };
 
 void add_pool(const SparseVolume& volume, StoredProperty& property) {
@@ -61,7 +61,7 @@ std::string grids_text(const GridSource& source) {
     return text + source.map.text();
 }
 
-// What reading needs beside the property.
+// Shared arguments for reading properties.
 struct Reading {
     Moment moment;
     const SequenceTime& time;
@@ -82,7 +82,7 @@ GridProperty property_of(StoredProperty stored, std::string key, Quantity quanti
     return property;
 }
 
-// A property and what its file says of it, the same in every process; empty where nobody asks.
+// A property, and a text that identifies it in every process; empty without a cache folder.
 struct FileProperty {
     GridProperty property;
     std::string content;
@@ -104,7 +104,7 @@ FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, 
     return {property_of(std::move(stored), key, quantity), content};
 }
 
-// Between two files, or beside one.
+// The property at a time between frames: two files blended, or one moved by velocities.
 StoredProperty property_between(const SequenceTime& time, const GridProperty& here, const GridProperty& next,
                                 Quantity quantity, const std::string& what) {
     StoredProperty property;
@@ -115,7 +115,7 @@ StoredProperty property_between(const SequenceTime& time, const GridProperty& he
     return property;
 }
 
-// `number`: of the property among those of `frames`.
+// The property at the moment. `number`: its index in FogFrames::properties.
 GridProperty read(const std::optional<GridSource>& source, size_t number, Quantity quantity, const Reading& reading,
                   const GridProperty* before) {
     if (!source) return {};
@@ -147,7 +147,7 @@ GridProperty read(const std::optional<GridSource>& source, size_t number, Quanti
                        key, quantity);
 }
 
-// That of a recipe's fire.
+// The temperature of a recipe's fire.
 GridProperty grown_temperature(const MediumSource& source, const Reading& reading, const GridProperty* before) {
     const FogRecipe recipe = grown_recipe(source);
     const double seconds = reading.moment.grown.value_or(reading.moment.seconds);
@@ -167,7 +167,7 @@ std::array<std::shared_ptr<const BrickPool>, 3> bricks_of(const GridProperty& pr
     return {property.channels[0].bricks, property.channels[1].bricks, property.channels[2].bricks};
 }
 
-// What follows from the properties in the place their files give them.
+// Key of everything derived from the properties before the medium's transform.
 std::string key_of(const MediumSource& source, double seconds, const MediumGrids& grids, const FogSource& fog) {
     std::string key;
     for (const GridProperty* property : {&grids.albedo, &grids.emission, &grids.temperature, &grids.flame})
@@ -215,7 +215,7 @@ EmissionPart colored_part(const MediumSource& source, const MediumGrids& grids) 
     return part_of(std::move(field), grids.emission.channels[0].index_to_world, source.name);
 }
 
-// Pools where the medium's transform puts them; each is moved once.
+// Applies the medium's transform to brick pools, once to each.
 class Placement {
 public:
     explicit Placement(const mat4& matrix) : matrix_(matrix) {}

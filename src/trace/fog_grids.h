@@ -1,4 +1,4 @@
-// What a medium takes from grids beside its density, at one moment: colors, and light of its own.
+// What a medium reads from grids besides its density, at one moment: albedo and emission.
 #pragma once
 #include "trace/snapshot.h"
 #include "volume/emission/luminance.h"
@@ -10,25 +10,25 @@ struct FogFrames;
 struct MediumSource;
 struct SequenceTime;
 
-// One property, as its file has it.
+// One property as read from its file, before the medium's transform.
 struct GridProperty {
     std::string key;                      // empty = nothing to reuse
-    std::array<PlacedBricks, 3> channels; // the first thrice for a grey grid
-    PlacedBricks there;                   // of colors
+    std::array<PlacedBricks, 3> channels; // the same pool three times for a gray grid
+    PlacedBricks there;                   // colors only: 1 at voxels that have one
     explicit operator bool() const { return channels[0].bricks != nullptr; }
 };
 
-// Light that a medium gives off, of which a medium of its own is made.
+// Emission of a medium, which becomes a separate medium (see append_light()).
 struct EmissionPart {
     std::shared_ptr<const EmissionField> field;
     PlacedBricks luminance;
     vec3 radiance{0};
 };
 
-// All properties of a medium, what follows from them, and that where its transform puts it.
+// All grid properties of a medium, and what is derived from them before and after the medium's transform.
 struct MediumGrids {
     GridProperty albedo, emission, temperature, flame;
-    std::string key; // of what follows
+    std::string key; // of the derived members below
     std::shared_ptr<const AlbedoField> color;
     vec3 mean_factor{1}; // of `color`
     EmissionPart blackbody, colored;
@@ -36,20 +36,20 @@ struct MediumGrids {
     bool is_placed = false;
     std::shared_ptr<const AlbedoField> placed_color;
     EmissionPart placed_blackbody, placed_colored;
-    std::shared_ptr<const FogFrames> frames; // of fog that moves while the shutter is open; null = of none
+    std::shared_ptr<const FogFrames> frames; // for fog that moves while the shutter is open; else null
 };
 
-// Of a medium with grids at a moment, when its files are at `time`; `fog` has its density, if there is any. What
-// `before` (may be null) has of the same files is shared with it. Files that it lies between are left in `frames`.
-// Throws Error.
+// The grids of a medium at a moment, with its files at `time`; `fog` holds its density, if any. Shares with `before`
+// (may be null) what comes from the same files. Stores the files read for a time between frames in `frames`. Throws
+// Error.
 std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, const SequenceTime& time,
                                                 MissingFrame missing, const mat4& matrix, const FogSource& fog,
                                                 const MediumGrids* before, FogFrames& frames, Snapshot& snapshot);
 
-// Gives a medium its colors, and appends its light to the snapshot's media.
+// Sets a medium's albedo field, and appends its emission to the snapshot's media.
 void color_medium(const MediumSource& source, double seconds, const MediumGrids& grids, Medium& medium);
 void append_light(const MediumSource& source, double seconds, const MediumGrids& grids, Snapshot& snapshot);
 
-// Whether a medium has grids beside its density.
+// Whether a medium has grids besides its density.
 bool has_grids(const MediumSource& source);
 }

@@ -13,7 +13,7 @@
 
 namespace tyndall {
 namespace {
-// Frames from the moment's own to its time; times of moments are rounded.
+// Offset of the moment's time from its frame, in frames; 0 within rounding.
 double frames_after(const Scene& scene, const Moment& moment) {
     constexpr double rounding = 1e-9;
     const double frames = moment.grown.value_or(moment.seconds) * scene.frame_rate - moment.frame;
@@ -37,7 +37,7 @@ std::shared_ptr<const FileVelocity> velocity_of(const GridSource& source, int fr
     return velocity;
 }
 
-// The frame whose files are moved: the nearest, but where that has none of its own the files of `frame` go on.
+// The frame whose file is moved: the nearest, or `frame` if the nearest has no file of its own.
 int nearest_frame(const MediumSource& source, int frame, double after, MissingFrame missing) {
     const auto steps = static_cast<int>(after > 0 ? std::ceil(after - 0.5) : std::floor(after + 0.5));
     if (steps == 0) return frame;
@@ -88,7 +88,7 @@ SparseVolume volume_at(const SequenceTime& time, const PlacedBricks& here, const
 }
 
 namespace {
-// The most voxels that velocities move fog by in their unit of time.
+// The largest distance, in voxels, that velocities move fog in their unit of time.
 double voxels_per_time(const FogSource& fog) {
     const FogFrames* frames = fog.grids ? fog.grids->frames.get() : nullptr;
     if (!frames || !frames->velocity || !fog.bricks) return 0;

@@ -1,4 +1,4 @@
-// Fog of files while the shutter is open: which frames of a sequence a moment lies between, or beside.
+// File sequences while the shutter is open: the frames that a moment lies between, or that its fog is moved from.
 #pragma once
 #include "trace/snapshot.h"
 #include "volume/motion/velocity_field.h"
@@ -11,48 +11,49 @@ struct PlacedBricks;
 struct SparseVolume;
 
 struct FileVelocity {
-    std::string key, content; // as of bricks
+    std::string key, content; // as FogSource::key and BrickPool::content
     VelocityField field;
 };
 
-// What of its files a medium shows at a moment: those of `frame`, and of that after them `share`; or moved.
+// How a medium's files give its state at a moment: `frame` blended with the next by `share`, or moved by `velocity`.
 struct SequenceTime {
     int frame = 0;
     float share = 0;
-    double moved = 0; // seconds or frames, times the medium's scale
+    double moved = 0; // seconds or frames to move by, times the medium's velocity scale
     std::shared_ptr<const FileVelocity> velocity;
 
     bool between() const { return share > 0 || velocity; }
-    std::string key() const, content() const; // as of bricks
+    std::string key() const, content() const; // as FogSource::key and BrickPool::content
 };
 
-// What the next moment needs as well of fog that moves: what its files hold.
+// File contents of moving fog, kept for the next moment.
 struct FogFrames {
     std::vector<FogSource> densities;
     std::array<std::vector<GridProperty>, 4> properties; // albedo, emission, temperature, flame
     std::shared_ptr<const FileVelocity> velocity;
-    double moved = 0; // as of the time
+    double moved = 0; // as in SequenceTime
 };
 
 // Whether a medium moves while the shutter is open.
 bool moves(const MediumSource& source);
 
-// `before` lends its velocity. Beyond the first and the last file those go on. Throws Error.
+// A medium's position in its file sequence at a moment. Holds the first and last file beyond the sequence's ends.
+// Reuses the velocity of `before` (may be null). Throws Error.
 SequenceTime sequence_time(const Scene& scene, const MediumSource& source, const Moment& moment, MissingFrame missing,
                            const FogFrames* before, Snapshot& snapshot);
 
-// Bricks of one quantity at that time: of the frame, and of the next one where they are mixed.
+// One quantity at that time, from its bricks at the frame and, where files are blended, at the next one.
 SparseVolume volume_at(const SequenceTime& time, const PlacedBricks& here, const PlacedBricks& next,
                        const std::string& what);
 
-// A file as keys name it: its path, size and time.
+// Key of a file: its path, size and modification time.
 std::string file_key(const std::filesystem::path& file);
 
-// The most voxels that the medium's velocities move it by in a second; 0 where nothing does.
+// Largest speed of the medium's velocities, voxels per second; 0 without velocities.
 double voxels_per_second(const Scene& scene, const MediumSource& source, const FogSource& fog);
 
-// How far a medium of a snapshot with moments is moved by its velocities from where a file has it, in voxels, and how
-// many moments have it in a place of its own.
+// Over a snapshot's moments: how far velocities move a medium from its position in a file at most, in voxels, and how
+// many distinct positions it has.
 struct FogTravel {
     double voxels = 0;
     int places = 0;

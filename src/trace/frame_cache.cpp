@@ -67,7 +67,7 @@ std::shared_ptr<CachedThing> find_cached(const Snapshot& snapshot, std::type_ind
     if (!thing) thing.reset(new CachedThing{type, std::move(key), {}, nullptr});
     if (!own) return thing;
 
-    // Another thread may have come first.
+    // Another thread may have added it first.
     const std::scoped_lock lock(own->mutex);
     for (const std::shared_ptr<CachedThing>& known : own->things)
         if (known->type == type && known->key == thing->key) return known;

@@ -1,11 +1,11 @@
-// What one frame makes and the next may need again: kept for as long as what it depends on stands still.
+// Cache of what one frame builds and the next may reuse, valid while its inputs do not change.
 //
-// Things are found by a key of everything they depend on, compared bit by bit and object by object, so that a thing
-// that is found has the bits it would have if it were made. A snapshot knows what its own frame made or found and what
-// the frame before it did; what two frames in a row did not ask for is gone.
+// Entries are found by a key of all their inputs, compared bitwise and by object identity, so that a cached entry is
+// bit-identical to a rebuilt one. A snapshot holds the entries of its own frame and of the previous one; an entry that
+// two consecutive frames do not request is dropped.
 //
-// Of a plan that was prepared, things come from files (base/io/cache_folder.h): those whose fields can be written, and
-// whose key says in every process what they depend on.
+// With a prepared plan, entries come from files (base/io/cache_folder.h) if their fields can be serialized and their
+// key identifies their inputs in every process.
 #pragma once
 #include "base/io/cache_folder.h"
 #include "base/math.h"
@@ -24,15 +24,15 @@ class Occluders;
 struct Snapshot;
 struct View;
 
-// What an object is made from, for the same plan the same text in every process; empty = not known.
+// Describes what an object is made from: for one plan the same text in every process; empty = unknown.
 std::string content_of(const BrickPool& bricks);
 std::string content_of(const Occluders& occluders);
 
 struct CacheKey {
     using ContentOf = std::string (*)(const void*);
-    std::string bits;                               // of plain values, one after the other
-    std::vector<std::weak_ptr<const void>> objects; // they need not live on: none is ever taken for another
-    std::vector<ContentOf> contents;                // of each, while it lives
+    std::string bits;                               // plain values, concatenated
+    std::vector<std::weak_ptr<const void>> objects; // compared by owner, even once they are gone
+    std::vector<ContentOf> contents;                // gives the content of each while it exists
 
     template<class T>
     requires std::is_arithmetic_v<T> || std::is_enum_v<T> CacheKey& add(T value) {
@@ -54,8 +54,8 @@ struct CacheKey {
         return *this;
     }
     CacheKey& add(const Box& box) { return add(box.low).add(box.high); }
-    CacheKey& add(const Light& light); // its place and shape; how bright it is does not count
-    CacheKey& add(const View& view);   // the rays it may send
+    CacheKey& add(const Light& light); // its position and shape, not its brightness
+    CacheKey& add(const View& view);   // everything its rays depend on
 
     bool operator==(const CacheKey& other) const;
 };
@@ -67,22 +67,22 @@ struct CachedThing {
     std::shared_ptr<const void> value;
 };
 
-// Of one frame.
+// Entries of one frame.
 struct FrameCache {
     std::mutex mutex;
     std::vector<std::shared_ptr<CachedThing>> things;
 };
 
-// The thing of a type and key in the snapshot's frame or in the one before, or a new empty one. From any thread.
+// The entry with this type and key in the snapshot's frame or the previous one, or a new empty one. Thread-safe.
 std::shared_ptr<CachedThing> find_cached(const Snapshot& snapshot, std::type_index type, CacheKey key);
 
-// The folder of the snapshot's plan, null where there is none; and what a key says in every process, empty where an
-// object does not tell.
+// The folder of the snapshot's plan, null if there is none; and a key as text that is the same in every process, empty
+// if the content of an object is unknown.
 CacheFolder* cache_folder(const Snapshot& snapshot);
 std::string content_of(const CacheKey& key, const CacheFolder& folder);
 
-// What make() returned the first time that the snapshot's frame, or the one before, asked for it with this key. A
-// snapshot made by hand keeps nothing. `what` names the thing to people.
+// The result of make() for this key, cached in the snapshot's frame or the previous one; calls make() if there is none.
+// Snapshots made by hand cache nothing. `what` names the entry in messages and files.
 template<class Make> auto cached(const Snapshot& snapshot, const char* what, CacheKey key, const Make& make) {
     using T = decltype(make());
     const std::shared_ptr<CachedThing> thing = find_cached(snapshot, typeid(T), std::move(key));

@@ -1,4 +1,4 @@
-// Objects that hold out: where the camera sees one there is neither colour nor alpha. Light treats them as any other.
+// Holdout objects (mattes): black with zero alpha to the camera, ordinary surfaces to lights.
 #pragma once
 #include "scene/scene.h"
 #include "trace/snapshot.h"

@@ -1,4 +1,4 @@
-// A moment of a scene, and the moments that a frame is made of: which cameras it has, and where they are then.
+// Moments in time: a single one, the moments that a frame averages, and a scene's cameras at a time.
 #pragma once
 #include <optional>
 #include <string>
@@ -10,19 +10,19 @@ struct Scene;
 struct Shutter;
 
 struct Moment {
-    int frame = 0; // of sequences of files
+    int frame = 0; // of the scene; selects files of sequences
     double seconds = 0;
-    std::optional<double> grown{}; // when its recipes are grown; none = then
+    std::optional<double> grown{}; // seconds at which recipes and moving files are evaluated; none = `seconds`
 };
 Moment moment_of(const Scene& scene, int frame);
 
-// All moments that a frame shows, which count the same.
+// The moments that a frame averages, with equal weights.
 struct FrameMoments {
-    Moment middle;               // of the time that the shutter is open
-    std::vector<Moment> moments; // in order; empty = the middle alone
+    Moment middle;               // of the shutter interval
+    std::vector<Moment> moments; // in order; empty = only the middle
 };
 
-// Sequences of files hold the frame's file. `count` below 2: the middle alone.
+// `count` moments of the shutter interval; only the middle if `count` is below 2. All have the frame's number.
 FrameMoments frame_moments(const Scene& scene, int frame, const Shutter& shutter, int count);
 
 Camera camera_at(const Scene& scene, int camera, double seconds);

@@ -14,12 +14,12 @@
 
 namespace tyndall {
 namespace {
-constexpr int looks = 5;          // moments at which places are compared
-constexpr float spacing = 0.75f;  // pixels between neighbouring moments: thin lines ripple by 6.4 %
-constexpr int fewest_moments = 4; // of what changes at all
+constexpr int looks = 5;          // moments at which positions are compared
+constexpr float spacing = 0.75f;  // pixels between adjacent moments: thin lines ripple by 6.4 %
+constexpr int fewest_moments = 4; // if anything changes
 
-// What a moment has of its own, as measured: triangles that move; of a light its grid in fog of voxels, its shadow
-// volumes, and what a mode that keeps pictures has of these from each point of the light and in tiles of the picture.
+// Measured memory that each moment adds: per moving triangle; per light, its grid in voxel fog and its shadow volumes;
+// in modes that keep images also per pixel, and per pixel of each light's beam.
 constexpr double max_bytes = 8.0 * (1 << 30), bytes_per_triangle = 200, bytes_of_grid = 8 << 20;
 constexpr double bytes_per_pixel = 16, bytes_per_beam_pixel = 17;
 
@@ -34,7 +34,7 @@ void add_corners(const mat4& matrix, const Box& box, Points& points) {
     }
 }
 
-// Vertices all over a mesh in a pose.
+// Up to 256 vertices spread over a posed mesh.
 void add_vertices(const mat4& matrix, const Mesh& mesh, const Pose& pose, Points& points) {
     constexpr size_t enough = 256;
     const size_t count = mesh.positions.size();
@@ -42,7 +42,7 @@ void add_vertices(const mat4& matrix, const Mesh& mesh, const Pose& pose, Points
         points.push_back(vec3(matrix * vec4(posed_position(mesh, pose, i * count / std::min(count, enough)), 1)));
 }
 
-// The lamp, and points along its beam: of what it lights, and of its shadows.
+// The light's position and points along its beam, which stand for what it lights and for its shadows.
 void add_light(const Scene& scene, const LightSource& light, double seconds, float extent, Points& points) {
     const mat4 matrix = light.node >= 0 ? node_matrix(scene, light.node, seconds) : mat4(1);
     const vec3 position = light.node >= 0 ? vec3(matrix[3]) : light.position.at(seconds);
@@ -53,7 +53,7 @@ void add_light(const Scene& scene, const LightSource& light, double seconds, flo
         points.push_back(aimed ? position + share * reach / length * along : position);
 }
 
-// What moves on the picture, always the same points in the same order.
+// The points whose motion is measured, in the same order at every moment.
 Points points_at(const Scene& scene, const std::vector<Box>& meshes, double seconds, float extent) {
     Points points;
     for (const LightSource& light : scene.lights) add_light(scene, light, seconds, extent, points);
@@ -69,7 +69,7 @@ Points points_at(const Scene& scene, const std::vector<Box>& meshes, double seco
         }
     for (const MediumSource& medium : scene.media) {
         const mat4 matrix = medium_matrix(medium, seconds);
-        points.push_back(vec3(matrix[3])); // of files, whose bounds only they know
+        points.push_back(vec3(matrix[3])); // for media from files, whose bounds are not read yet
         add_corners(matrix, medium.recipe ? medium.recipe->bounds : medium.bounds, points);
     }
     return points;
@@ -147,7 +147,7 @@ float motion_on_picture(const Scene& scene, int camera, ivec2 size, int frame, c
             before[i] = at;
         }
     }
-    // A camera that turns moves even what has no place: the background.
+    // A camera that turns moves even the background, which has no position.
     const Camera first = camera_at(scene, camera, seconds_of(scene, frame, shutter, 0));
     const Camera last = camera_at(scene, camera, seconds_of(scene, frame, shutter, 1));
     const std::optional<vec2> turned = pixel_of(last, size, last.position + extent * first.forward);
@@ -175,13 +175,13 @@ template<class Counts> double count_triangles(const Scene& scene, const Counts& 
     return static_cast<double>(triangles);
 }
 
-// How many times a light's shadow volumes are in memory, at most: by themselves and as cameras see them.
+// How many copies of a light's shadow volumes are in memory at most: the volumes themselves, and views of them.
 int copies_of_volumes(const LightSource& light, double seconds, bool keeps_pictures) {
     if (!keeps_pictures) return 1;
     return light.radius.at(seconds) > 0 ? 5 : 2;
 }
 
-// `everything`: whether what is kept of lights is made anew at each moment.
+// `everything`: all cached data of lights is rebuilt at each moment.
 double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool everything, bool keeps_pictures) {
     const bool voxels = std::ranges::any_of(scene.media, [](const MediumSource& medium) {
         return medium.kind == MediumKind::noise || medium.kind == MediumKind::vdb;
@@ -194,11 +194,11 @@ double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool e
         if (anew && voxels) bytes += bytes_of_grid;
         if (!anew && moving == 0) continue;
         const float cone = has_cone(light) ? light.outer_cone.at(seconds) : pi;
-        const double share = cone < pi / 4 ? std::tan(cone) : 1; // a beam meets fewer surfaces and pixels
+        const double share = cone < pi / 4 ? std::tan(cone) : 1; // a narrow beam covers fewer surfaces and pixels
         volumes += share * copies_of_volumes(light, seconds, keeps_pictures) * bytes_per_shadow_triangle * all;
         if (keeps_pictures) bytes += share * bytes_per_beam_pixel * pixels;
     }
-    return bytes + (volumes <= max_bytes_of_shadows ? volumes : 0); // beyond, shadows are found in other ways
+    return bytes + (volumes <= max_bytes_of_shadows ? volumes : 0); // above the limit, shadows are found in other ways
 }
 }
 

@@ -1,4 +1,4 @@
-// How far things move on the picture while the shutter is open, and how many moments show that as one blur.
+// How far things move across the image while the shutter is open, and how many moments motion blur needs.
 #pragma once
 #include "base/math.h"
 
@@ -7,23 +7,24 @@ struct MediumSource;
 struct Scene;
 struct Shutter;
 
-inline constexpr int max_usual_moments = 512, max_moments = 1024; // without being asked for; at all
-inline constexpr int moments_of_velocities = 32;                  // of fog that they move, at least
+inline constexpr int max_usual_moments = 512, max_moments = 1024; // chosen automatically; on request
+inline constexpr int moments_of_velocities = 32;                  // minimum for fog that velocities move
 
-// Pixels that the fastest of lights, their beams, surfaces and media travels, the camera's own motion included; what
-// never shows does not count. By a few points of each.
+// Distance in pixels that the fastest light, beam, surface or medium travels across the image, camera motion included.
+// Estimated from a few points of each; points that stay out of view do not count.
 float motion_on_picture(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter);
 
-// Whether a medium has keys, moving noise or velocities: whether it changes with time, apart from files one a frame.
+// Whether a medium changes within a frame: keyframes, moving noise, velocities or blended files. One file per frame
+// alone does not count.
 bool changes(const MediumSource& medium);
 
 // Whether anything may change while the shutter is open.
 bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter);
 
-// A power of two: so many that the moments lie no more than 0.75 pixels apart, or max_usual_moments; at least 4 where
-// anything changes, else 1; `finer` times as many where the error counts. Fewer, down to 4, where they would take more
-// than 8 GiB; `keeps_pictures`: of a mode that keeps something of each pixel and light. Fog that its velocities move
-// wants moments_of_velocities: its speed is in files that are not read yet.
+// Number of moments for motion blur, a power of two: enough that they lie at most 0.75 pixels apart, at least 4 if
+// anything changes, else 1; times `finer` for an error target; at most max_usual_moments. Fewer, down to 4, if they
+// would take more than 8 GiB; `keeps_pictures`: the mode stores data per pixel and light. Fog moved by velocities gets
+// at least moments_of_velocities, as its speed is in files that are not read yet.
 int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter,
                   bool keeps_pictures = false, int finer = 1);
 }

@@ -1,4 +1,4 @@
-// A scene at one moment: animations evaluated, triangles built, fog made.
+// Evaluates a scene at one moment: animation, triangles, fog.
 #include "trace/snapshot.h"
 #include "base/error.h"
 #include "base/text.h"
@@ -23,9 +23,9 @@
 
 namespace tyndall {
 namespace {
-constexpr float core_share = 1e-5f; // of the scene's extent: the core of its lamps
+constexpr float core_share = 1e-5f; // fraction of the scene's extent: core radius of its local lights
 
-// Where a node stands and which way it looks, free of its scale.
+// A node's position and axes; `forward` is normalized.
 struct Frame {
     vec3 position, up, forward;
 };
@@ -64,7 +64,7 @@ Light light_at(const Scene& scene, const LightSource& source, double seconds, ve
     return light;
 }
 
-// The face of a rectangle, disc or sphere, and the lamp that stands for it.
+// Gives an area light its shape, and makes the rest of it a local light that approximates the shape.
 void add_face(const LightSource& source, double seconds, vec3 up, Light& light) {
     AreaShape shape;
     shape.kind = source.kind, shape.center = light.position, shape.normal = light.direction;
@@ -84,12 +84,12 @@ bool shines(const Light& light) {
            std::max(light.volume_scale, light.surface_scale) > 0;
 }
 
-// A box that is finite in every direction; fog without bounds says nothing about where the scene is.
+// Whether a box is finite in every direction; fog without bounds does not tell where the scene is.
 bool bounded(const Box& box) { return !box.empty() && is_finite(box.low) && is_finite(box.high); }
 
-// Of the scene and its camera at the first frame; without any place, how far light gets in the fog. What must not
-// depend on the unit of length is a share of the extent, and lattices that stand still in the world stand on the
-// anchor.
+// Sets anchor and extent from the scene and its camera at the first frame; without any positions, the extent is the
+// fog's mean free path. Lengths that must not depend on the unit of length are fractions of the extent, and lattices
+// fixed in the world are aligned to the anchor.
 void set_extent(const Scene& scene, Snapshot& snapshot) {
     const double seconds = moment_of(scene, scene.first_frame).seconds;
     Box box = scene_bounds(scene, seconds);
@@ -179,8 +179,8 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
 }
 
 namespace {
-// How often fog has to be made anew: once, and whenever it has moved half a voxel; of files that are mixed, a 16th of a
-// frame apart, which shows no steps.
+// How often fog must be rebuilt: once, and whenever it has moved by half a voxel; 16 times per frame where files are
+// blended, so that no steps show.
 double recipes_wanted(const Scene& scene, double seconds) {
     double most = 1;
     for (const MediumSource& medium : scene.media) {
@@ -226,7 +226,7 @@ double growths_affordable(const Scene& scene, const Snapshot& snapshot) {
     return std::max(max_bytes / bytes, 1.0);
 }
 
-// Moments in so many runs of neighbours, each with the fog of its middle.
+// Divides the moments into about `growths` runs of consecutive ones, each with the fog of its middle.
 std::vector<Moment> with_growths(std::vector<Moment> moments, double growths) {
     const size_t count = moments.size();
     const size_t run = static_cast<size_t>(std::ceil(static_cast<double>(count) / std::min(growths, 1.0 * count)));
@@ -245,7 +245,7 @@ Snapshot make_snapshot(const Scene& scene, const FrameMoments& frame, const Snap
     if (previous && previous->moments) previous = &previous->moments->back();
     const double seconds = frame.moments.back().seconds - frame.moments.front().seconds;
     const double wanted = recipes_wanted(scene, seconds);
-    // How fast files move is known once the first are read.
+    // The velocities in files are known only once the first are read.
     const bool by_velocity =
         std::ranges::any_of(scene.media, [](const auto& medium) { return medium.velocity.has_value(); });
     std::vector<Moment> moments = with_growths(frame.moments, by_velocity ? infinity : wanted);

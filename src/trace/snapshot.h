@@ -24,7 +24,7 @@ struct Scene;
 template<class T> struct Image;
 
 struct BackgroundNow {
-    bool stated = false; // the scene says what is there, be it black
+    bool stated = false; // the scene defines a background, even a black one
     BackgroundKind kind = BackgroundKind::color;
     vec3 color{0}, zenith{0}, ground{0};
     std::shared_ptr<const Image<vec3>> image;
@@ -32,13 +32,14 @@ struct BackgroundNow {
     float intensity = 1, rotation = 0;
 };
 
-// Bricks as file or recipe made them, what they were made from, and where the medium's own transform put them.
+// A medium's bricks as made from its file or recipe, a key of what they were made from, and the bricks with the
+// medium's transform applied.
 struct FogSource {
     std::string key;         // empty = nothing to reuse
     dmat4 index_to_world{1}; // before the medium's transform
     std::shared_ptr<const BrickPool> bricks, placed;
     mat4 matrix{1};                           // the medium's transform
-    std::shared_ptr<const MediumGrids> grids; // what it has beside its density
+    std::shared_ptr<const MediumGrids> grids; // its grids besides density
 };
 
 // Some of the scene's instances, and their surfaces.
@@ -51,28 +52,28 @@ struct Snapshot {
     const Scene* scene = nullptr;
     double seconds = 0;
     int frame = 0;
-    std::vector<Light> lights; // of non-zero intensity; those with a face after all others
-    std::vector<Medium> media; // that dim light or emit it; of non-zero extinction, the same in all channels
-    // Where channels differ, which `media` is the mean of: the media as red, green and blue light meet them. Else
-    // empty.
+    std::vector<Light> lights; // with non-zero intensity; area lights come last
+    std::vector<Medium> media; // those that attenuate or emit; extinction is non-zero and the same in all channels
+    // The media as red, green and blue light see them, if any medium's extinction differs between channels (`media`
+    // then holds the mean); else empty.
     std::array<std::vector<Medium>, 3> channel_media;
     vec3 ambient{0};
     BackgroundNow background;
-    std::shared_ptr<const Environment> environment; // light from all around; null = none
+    std::shared_ptr<const Environment> environment; // null = none
     std::shared_ptr<const Occluders> occluders;     // of all surfaces
-    std::vector<CasterSet> casters;                 // of lights that some surfaces alone shadow
-    std::vector<std::vector<bool>> lit;             // instances, of lights that shine on some alone
-    vec3 anchor{0};                                 // the middle of the scene, the same in every frame
-    float extent = 10;                              // metres: how large it is, the same in every frame
+    std::vector<CasterSet> casters;                 // of lights that only some surfaces shadow
+    std::vector<std::vector<bool>> lit;             // flags per instance, for lights that illuminate only some
+    vec3 anchor{0};                                 // center of the scene, the same in every frame
+    float extent = 10;                              // meters: size of the scene, the same in every frame
     Box bounds;                                     // of meshes, local lights and bounded media
-    std::vector<std::string> notes;                 // what was mended in the files of this frame; say once
-    std::vector<FogSource> fog_sources;             // one per medium of the scene: what the next frame can use again
-    std::shared_ptr<FrameCache> cache;              // made for this frame so far; null in snapshots made by hand
-    std::shared_ptr<FrameCache> cache_before;       // for the frame before; null of the first
-    std::shared_ptr<CacheFolder> files;             // with things of a plan that was prepared; else null
-    std::shared_ptr<const std::vector<Snapshot>> moments; // of a frame with an open shutter, whose middle this is
+    std::vector<std::string> notes;                 // what was repaired in this frame's files; to be reported once
+    std::vector<FogSource> fog_sources;             // one per medium of the scene: what the next frame can reuse
+    std::shared_ptr<FrameCache> cache;              // entries of this frame; null in snapshots made by hand
+    std::shared_ptr<FrameCache> cache_before;       // entries of the previous frame; null for the first
+    std::shared_ptr<CacheFolder> files;             // of a prepared plan; else null
+    std::shared_ptr<const std::vector<Snapshot>> moments; // of a frame with motion blur; this is their middle
 
-    // Not inline: who only holds a snapshot needs neither lights nor media.
+    // Out of line, so that code that only holds a snapshot needs neither lights nor media.
     Snapshot();
     Snapshot(const Snapshot&);
     Snapshot(Snapshot&&) noexcept;
@@ -81,22 +82,22 @@ struct Snapshot {
     ~Snapshot();
 };
 
-// Evaluates every animation, loads or grows the frame's fog, builds the ray tracing scene. What did not change since
-// `previous` (of the same, unchanged Scene) is shared with it, and the result is the same without. The Scene must
-// outlive it. What `files` holds is taken from there. Throws Error.
+// Evaluates all animation, loads or generates the frame's fog, builds the ray tracing scene. Shares what did not change
+// with `previous` (of the same, unmodified Scene); the result is the same without it. Reads what it can from `files`.
+// The Scene must outlive the snapshot. Throws Error.
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous = nullptr,
                        MissingFrame missing = MissingFrame::error, std::shared_ptr<CacheFolder> files = nullptr);
 
-// All moments of a frame, each sharing with the one before it. Neighbouring moments share the fog of recipes, which is
-// grown anew where it has moved half a voxel, and less often where that would take more than some 1 GiB.
+// All moments of a frame, each sharing data with the previous one. Fog is rebuilt when it has moved by half a voxel,
+// less often if that would take more than about 1 GiB; the moments in between share it.
 Snapshot make_snapshot(const Scene& scene, const FrameMoments& moments, const Snapshot* previous = nullptr,
                        MissingFrame missing = MissingFrame::error, std::shared_ptr<CacheFolder> files = nullptr);
 
-// Whether fog dims the channels differently, and the scene as one of them, 0 to 2, meets it.
+// Whether extinction differs between channels, and the snapshot as one channel, 0 to 2, sees it.
 bool is_chromatic(const Snapshot& snapshot);
 Snapshot channel_of(const Snapshot& snapshot, int channel);
 
-// The surfaces that shadow the light; null = none does.
+// The surfaces that shadow the light; null = none.
 const std::shared_ptr<const Occluders>& shadow_casters(const Light& light, const Snapshot& snapshot);
 const std::shared_ptr<const Occluders>& shadow_casters(const Environment& environment, const Snapshot& snapshot);
 
@@ -105,18 +106,18 @@ bool shadows_light(const Light& light, const Snapshot& snapshot, int instance);
 bool is_lit(const Light& light, const Snapshot& snapshot, int instance);
 bool is_lit(const Environment& environment, const Snapshot& snapshot, int instance);
 
-// Whether light gets through a surface that shadows one of the lights.
+// Whether a surface that shadows one of the lights has alpha.
 bool has_alpha_shadows(const Snapshot& snapshot);
 
 BackgroundNow background_at(const Background& background, double seconds);
 
-// Where a direction lies on a map from the upper left, 0..1: its middle is -Z, and `rotation` (radians) turns it to the
-// left.
+// Position of a direction in a latitude-longitude map, 0..1 from the upper left. The map's center is -Z; `rotation`
+// (radians) turns it to the left.
 vec2 lat_long_position(vec3 direction, float rotation);
 
-// Whether there is one: where the scene says nothing of it, it is black and nothing.
+// Whether there is a background: one that the scene defines, or one that is not black.
 bool has_background(const BackgroundNow& background);
 
-// Radiance behind everything. `screen` is the position on the picture, 0..1 from the upper left (for plates).
+// Background radiance. `screen`: position in the image, 0..1 from the upper left (for plates).
 vec3 background_radiance(const BackgroundNow& background, vec3 direction, vec2 screen);
 }

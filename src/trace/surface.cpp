@@ -1,4 +1,4 @@
-// Lambert surfaces under every light, through the fog between them.
+// Shades Lambertian surfaces with every light, attenuated by the fog in between.
 #include "trace/surface.h"
 #include "trace/lights/environment.h"
 #include "trace/lights/faces.h"
@@ -18,7 +18,7 @@ struct Packet {
     vec3 irradiance[16]; // of the current light, cosine included
 };
 
-// What the light brings to each point with nothing in the way, on the side that is seen.
+// Unoccluded irradiance at each point, on the visible side. False if it is 0 at all of them.
 bool gather_light(const Light& light, const Snapshot& snapshot, std::span<const SurfacePoint> points, Packet& packet) {
     bool any = false;
     for (size_t i = 0; i < 16; ++i) {
@@ -34,7 +34,7 @@ bool gather_light(const Light& light, const Snapshot& snapshot, std::span<const 
     return any;
 }
 
-// Share of the light's point that each surface point sees; `u` picks the point, one pair of numbers each.
+// Transmission from each surface point to a point of the light; `u` chooses the latter, one sample pair each.
 void see_light(const Occluders& occluders, const Light& light, std::span<const SurfacePoint> points, const vec2* u,
                const Packet& packet, float* visibility) {
     Occluders::ShadowRays rays{};

@@ -1,4 +1,4 @@
-// Surfaces behind the fog: Lambert, lit through the fog, shadowed, plus emission and ambient light.
+// Shading of Lambertian surfaces: light attenuated by fog and shadowed, plus emission and ambient light.
 #pragma once
 #include "base/math.h"
 
@@ -10,12 +10,13 @@ struct LightDepth;
 struct Snapshot;
 struct SurfacePoint;
 
-// Radiance leaving each point towards the viewer. Up to 16 points; `u`, points × n pairs of numbers in [0,1), picks n
-// points on each soft light, and n directions of the environment: n for the first point, then n for the next. per_light
-// (optional) receives points × lights radiances.
+// Radiance leaving each of up to 16 points toward the viewer. `depths`: one per light; a light without one is not
+// attenuated by fog. `u`: points × n sample pairs in [0,1), n for the first point, then n for the next; they choose n
+// points on each soft light, and n directions of the environment. per_light (optional) receives points × lights
+// radiances.
 void shade_surfaces(const Snapshot& snapshot, std::span<const LightDepth> depths, std::span<const SurfacePoint> points,
                     std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light = nullptr);
 
-// A direction picked by the cosine to a normal, from two numbers in [0,1); the square of the sine is the first.
+// A cosine-distributed direction about a normal, from two numbers in [0,1); u.x is the squared sine.
 vec3 cosine_direction(vec3 normal, vec2 u);
 }

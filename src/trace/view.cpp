@@ -1,5 +1,4 @@
-// How many samples a pixel takes, and where in it they lie: a scrambled (0,2)-sequence bent into the shape of the
-// filter.
+// How many samples a pixel takes, and where they lie: a scrambled (0,2)-sequence warped by the pixel filter.
 #include "trace/view.h"
 #include "base/random.h"
 #include "trace/sampling/lamp_samples.h"
@@ -63,10 +62,10 @@ int moment_at(const View& view, ivec2 pixel, int sample) {
     const ivec2 tile = pixel / tile_side;
     const uint32_t key = hash(static_cast<uint32_t>(tile.x), static_cast<uint32_t>(tile.y), view.seed,
                               static_cast<uint32_t>(view.frame), use_shutter, batch);
-    // The samples of all pixels of a tile take the same places in a scrambled sequence of their own ...
+    // The samples of all pixels of a tile share the points of one scrambled sequence ...
     const uint32_t shuffled = owen_scramble(index, hash(key, 0u));
     uint32_t time = owen_scramble(reverse_bits(shuffled), hash(key, 1u));
-    // ... but that each pixel of 2×2 has its own quarter of what lies between two of them.
+    // ... except that each pixel of 2×2 takes its own quarter of the gap between two points.
     const uint32_t quarter = static_cast<uint32_t>(pixel.x & 1) | static_cast<uint32_t>(pixel.y & 1) << 1;
     const int bits = std::bit_width(std::bit_ceil(count)) - 1;
     time ^= quarter << 30 >> bits;

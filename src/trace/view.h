@@ -1,4 +1,4 @@
-// What is rendered: a camera, a picture size and how its pixels are sampled.
+// What is rendered: a camera, an image size and how pixels are sampled.
 #pragma once
 #include "base/image.h"
 #include "scene/camera.h"
@@ -12,9 +12,9 @@
 #include <vector>
 
 namespace tyndall {
-// A number for each tile of 4×4 pixels: most often, how many times as many samples it takes.
+// A number for each tile of 4×4 pixels, usually the factor on its sample count.
 struct TileFactors {
-    ivec2 low{0}; // the first tile's place
+    ivec2 low{0}; // index of the first tile
     Image<uint16_t> factors;
 
     int at(ivec2 tile) const {
@@ -24,88 +24,88 @@ struct TileFactors {
     }
 };
 
-// Of cache files, in this order.
+// Serialized to cache files in this order.
 template<class Visit> void fields(TileFactors& tiles, Visit& visit) {
     visit(tiles.low), visit(tiles.factors.size), visit(tiles.factors.pixels);
 }
 
-// While the shutter is open.
+// The moments of an open shutter.
 struct OpenShutter {
     std::vector<Camera> cameras; // at each moment
-    float motion = 0;            // pixels that the fastest thing travels on the picture
+    float motion = 0;            // pixels that the fastest object travels across the image
 };
 
 struct View {
     Camera camera;
-    ivec2 size{640, 360};            // the full picture (display window)
+    ivec2 size{640, 360};            // the full image (display window)
     ivec2 crop_low{0}, crop_high{0}; // pixels low..high (high excluded) to render; equal = all
     int pixel_samples = 4;
-    int batches = 1;  // independent groups of equally many samples, each with random numbers of its own
-    int sections = 1; // of each batch, in its order, whose spread tells noise
-    int leaves = 0;   // of each section, where batches are a plan's groups: a power of two; 0 = they are not
+    int batches = 1;  // independent groups of equal size, each with its own random numbers
+    int sections = 1; // consecutive parts of each batch, whose variance measures noise
+    int leaves = 0;   // per section, if batches are the groups of a plan: a power of two; else 0
     PixelFilter filter = PixelFilter::blackman_harris;
     float filter_radius = 1.0f; // pixels
     Jitter jitter = Jitter::interleaved;
-    int lamp_samples = 1;       // most times as many samples around a lamp
-    int edge_samples = 1;       // most times as many samples where the picture changes from pixel to pixel
-    bool surface_parts = false; // whether the light of surfaces and of the background is wanted apart
-    bool fog_parts = false;     // and that in fog by where it comes from
-    bool background = true;     // whether the background is in the picture ...
-    bool covered = true;        // ... and then in alpha
+    int lamp_samples = 1;       // largest factor on the sample count around a lamp
+    int edge_samples = 1;       // largest factor on the sample count where the image changes from pixel to pixel
+    bool surface_parts = false; // whether light of surfaces and of the background is output separately
+    bool fog_parts = false;     // whether light of the fog is output separately by source
+    bool background = true;     // whether the background is in the image ...
+    bool covered = true;        // ... and in its alpha
     uint32_t seed = 0;
     int frame = 0;            // varies the jitter from frame to frame
-    bool has_history = false; // whether techniques with a memory look at the frames before
+    bool has_history = false; // whether temporal techniques use the previous frames
 
-    // A local light in the picture, around which the fog's glow changes within a pixel.
+    // A local light in the image, around which in-scattered light varies within a pixel.
     struct Lamp {
         vec2 at;               // pixels from the upper left
         float radius = 0;      // pixels
-        vec2 axis{0, 1};       // unit: the way a spot shines, in the picture
-        float half_angle = pi; // radians to both sides of it; pi = all around
+        vec2 axis{0, 1};       // unit: direction of a spot's beam in the image
+        float half_angle = pi; // radians to each side of the axis; pi = all around
     };
     std::vector<Lamp> lamps;
-    std::shared_ptr<const TileFactors> edges{};    // found for the picture; null = none
-    std::shared_ptr<const OpenShutter> shutter{};  // null = the picture is one moment
-    std::shared_ptr<const TileFactors> allotted{}; // instead of what lamps and edges take; 0 = the tile is left out
-    std::shared_ptr<const TileFactors> before{};   // samples of a batch that an earlier picture took: this one goes on
-                                                   // in their sequences, in as many batches for all pixels; null = none
+    std::shared_ptr<const TileFactors> edges{};    // from the image's edges; null = none
+    std::shared_ptr<const OpenShutter> shutter{};  // null = the image shows one moment
+    std::shared_ptr<const TileFactors> allotted{}; // replaces the factors of lamps and edges; 0 = skips the tile
+    std::shared_ptr<const TileFactors> before{};   // samples per batch of an earlier image, whose sequences this one
+                                                   // continues, in equally many batches for all pixels; null = none
 };
 
-// Samples of a pixel: more around the view's lamps and at its edges, or as allotted, the same for all pixels of a tile
-// of 4×4. The light that fog scatters along a ray falls with the ray's distance from the lamp, d pixels, as 1/d.
+// Samples of a pixel: more around the view's lamps and at its edges, or as allotted; the same for all pixels of a 4×4
+// tile. In-scattered light along a ray falls off as 1/d, with d its distance from the lamp in pixels.
 int samples_of(const View& view, ivec2 pixel);
-std::pair<int, int> samples_range(const View& view); // fewest and most that a pixel may take
+std::pair<int, int> samples_range(const View& view); // minimum and maximum over pixels
 
-// Batches that a pixel's samples come in: more where it is allotted many, so that its spread is well known.
-inline constexpr int many_allotted = 8, more_batches = 4; // from that factor on, if it is a multiple
+// Batches of a pixel's samples: more where it is allotted many, for a reliable estimate of its variance.
+inline constexpr int many_allotted = 8, more_batches = 4; // from this factor on, if it is a multiple of more_batches
 int batches_of(const View& view, ivec2 pixel);
 
-// A sample of a pixel as one of its batch, which counts those of earlier pictures that it goes on from.
+// A sample as a member of its batch; counts the samples of the earlier image that the batch continues.
 struct BatchSample {
-    uint32_t batch, index, count; // count: samples of the batch once this picture is done
+    uint32_t batch, index, count; // count: samples of the batch once this image is done
 };
 BatchSample batch_sample(const View& view, ivec2 pixel, int sample);
 
 SamplePlace sample_place(const View& view, ivec2 pixel, int sample);
 
-// Where a sample lies and how much its light counts: 1 on the average.
+// Position and weight of a sample; weights average 1.
 struct SamplePoint {
-    vec2 position; // pixels from the upper left of the picture
+    vec2 position; // pixels from the upper left of the image
     float weight = 1;
 };
 
-// Which of the shutter's moments a sample shows. Those of a pixel and batch are spread evenly over them, and so are
-// those of each 2×2 pixels at one sample; a tile of 4×4 holds four moments at most at one sample, so that its rays
-// still go together. Many samples: all pixels of a tile show the same moment.
+// The shutter moment of a sample. The samples of a pixel and batch are stratified over the moments, and so are those of
+// each 2×2 pixels at one sample index. A 4×4 tile has at most four moments at one sample index, so that its rays stay
+// coherent; with many samples, all its pixels have the same moment.
 int moment_at(const View& view, ivec2 pixel, int sample);
 
-// The ray of a sample that lies at a position: through the lens, where the camera has one. Points of the lens follow a
-// scrambled (0,2)-sequence of their own.
+// The camera ray of a sample at a position, through a point of the lens if there is one. Lens points follow a separate
+// scrambled (0,2)-sequence.
 Ray sample_ray(const View& view, const Camera& camera, vec2 position, SamplePlace place);
 inline Ray sample_ray(const View& view, vec2 position, SamplePlace place) {
     return sample_ray(view, view.camera, position, place);
 }
 
-// Importance sampled by the filter, so that weights are one, or by filter and glow where a lamp is seen.
+// Importance sampled by the filter, with unit weights, or by filter times glow near a lamp.
 SamplePoint sample_point(const View& view, ivec2 pixel, int sample);
 }

@@ -12,7 +12,7 @@ void append_side(const dvec3& normal, const dvec3& on, ViewFrustum& space) {
     if (std::isfinite(offset)) space.sides.push_back({vec3(normal / length), static_cast<float>(offset + rounding)});
 }
 
-// The plane of two neighbouring corners' rays, facing the middle of the picture.
+// The plane through the rays of two adjacent corners, facing the middle of the image.
 void append_edge(const Ray& a, const Ray& b, const Ray& middle, ViewFrustum& space) {
     const dvec3 from = a.origin, to = dvec3(b.origin) + dvec3(b.direction);
     const dvec3 normal = glm::cross(dvec3(a.direction), to - from);
@@ -21,8 +21,8 @@ void append_edge(const Ray& a, const Ray& b, const Ray& middle, ViewFrustum& spa
 }
 }
 
-// Rays through a lens of radius r and focus f stray by r |1 - z/f| at depth z, which is at most r + r z/f: a pinhole's
-// picture that is wider by r/f per metre, seen from a place that is r farther out.
+// Rays through a lens of radius r focused at f deviate by r |1 - z/f| at depth z, at most r + r z/f. They stay inside a
+// pinhole frustum widened by r/f per meter of depth, with its sides moved outward by r.
 ViewFrustum view_frustum(const View& view, const Snapshot& snapshot, vec3 anchor) {
     ViewFrustum space{anchor, {}};
     const Lens& lens = view.camera.lens;

@@ -1,4 +1,4 @@
-// The space that the rays of a picture cross on their way through fog.
+// The region of fog that an image's rays can cross.
 #pragma once
 #include "trace/view.h"
 
@@ -15,17 +15,17 @@ struct HalfSpace {
 
 struct ViewFrustum {
     vec3 anchor{0};
-    std::vector<HalfSpace> sides; // what all of them hold is seen; none: everything
+    std::vector<HalfSpace> sides; // the frustum is their intersection; none = all space
 };
 
-// Planes through the picture's edges and the camera, and the sides of a box around the fog. Pixel filters look a little
-// past the edges.
+// The planes through the camera and the image's edges, widened for pixel filters and lenses; the plane of the camera;
+// and the sides of the fog's bounding box.
 ViewFrustum view_frustum(const View& view, const Snapshot& snapshot, vec3 anchor);
 
-// How far past the picture's edges rays go, pixels.
+// How far rays reach beyond the image's edges, pixels.
 inline float past_edge(const View& view) { return view.filter_radius + 1; }
 
-// The stretch of a ray on which it comes near seen space: nearer than radius + growth · t. The ray's origin is given as
-// its offset from the anchor.
+// The interval of a ray that lies within radius + growth · t of the frustum. `offset`: the ray's origin relative to the
+// anchor.
 Interval<float> seen_stretch(const ViewFrustum& space, vec3 offset, vec3 direction, float radius, float growth);
 }

@@ -1,4 +1,4 @@
-// Density at points: one by one, and the vector sampler behind a plain interface.
+// Density at single points, and the SIMD sampler behind a plain interface.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volume/medium.cpp"
 #include <hwy/foreach_target.h>

@@ -1,4 +1,4 @@
-// Density at sixteen points, inside kernels compiled per instruction set (base/simd/simd.h says how).
+// Density at sixteen points, for kernels compiled per instruction set (see base/simd/simd.h).
 #if defined(TYNDALL_VOLUME_MEDIUM_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_MEDIUM_SIMD_H
 #undef TYNDALL_VOLUME_MEDIUM_SIMD_H
@@ -27,7 +27,7 @@ HWY_INLINE Mask16 positive(const Ints& a) {
 
 HWY_INLINE Floats mixed(const Floats& a, const Floats& b, const Floats& weight) { return fused(b - a, weight, a); }
 
-// One axis of local coordinates: the cell, and how far into it.
+// Local coordinates along one axis: the cell and the fraction within it.
 struct Cells {
     Ints cell;
     Floats weight;
@@ -38,7 +38,7 @@ HWY_INLINE Cells cells_of(const Floats& local, int bricks) {
     return {cell, inside - to_floats(cell)};
 }
 
-// Pools of more bricks than 32-bit offsets reach: lane by lane.
+// Scalar fallback for pools too large for 32-bit offsets.
 inline Floats brick_density_far(const BrickPool& pool, const Vec3s& point) {
     alignas(64) float x[16], y[16], z[16], density[16];
     store(point.x, x), store(point.y, y), store(point.z, z);
@@ -46,7 +46,7 @@ inline Floats brick_density_far(const BrickPool& pool, const Vec3s& point) {
     return load(density);
 }
 
-// Trilinear density of the bricks, 0 outside; the same bits as sample_density() where multiply-adds fuse.
+// Trilinear density of the bricks, 0 outside; bit-identical to sample_density() on hardware with fused multiply-add.
 HWY_INLINE Floats brick_density(const BrickPool& pool, const Vec3s& point) {
     if (pool.empty()) return 0.0f;
     constexpr size_t within_reach = (size_t{1} << 31) - brick_stride;
@@ -64,7 +64,7 @@ HWY_INLINE Floats brick_density(const BrickPool& pool, const Vec3s& point) {
 
     Floats density = 0.0f;
     if (any(dense)) {
-        // Offsets count from the middle of the 4 GB that signed 32-bit byte offsets span. Other lanes read brick 0.
+        // Offsets are from the middle of the 4 GB range of signed 32-bit byte offsets. Inactive lanes read brick 0.
         constexpr int32_t middle = 1 << 30;
         const uint16_t* base = pool.values.data() + middle;
         const Ints in_brick = (x.cell & 7) * 81 + (y.cell & 7) * 9 + (z.cell & 7);
@@ -82,7 +82,7 @@ HWY_INLINE Floats brick_density(const BrickPool& pool, const Vec3s& point) {
     return density;
 }
 
-// 1 inside the medium's local box, 0 outside.
+// True inside the medium's local box.
 HWY_INLINE Mask16 inside_bounds(const Medium& medium, const Vec3s& point) {
     const Vec3s p = transform_points(medium.density.world_to_local, point);
     const Box& box = medium.density.bounds;

@@ -1,5 +1,5 @@
-// Optical depth in closed form. Along a ray trilinear density is a cubic in every voxel cell, which two Gauss points
-// integrate exactly. Where a ray is and what is summed is kept in double, what is inside a cell in float.
+// Analytic optical depth. Trilinear density along a ray is a cubic in every voxel cell, which two Gauss points
+// integrate exactly. Ray positions and sums are in double, values inside a cell in float.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volume/optical_depth.cpp"
 #include <hwy/foreach_target.h>
@@ -13,12 +13,12 @@
 #ifndef TYNDALL_VOLUME_CROSSED_CELLS
 #define TYNDALL_VOLUME_CROSSED_CELLS
 namespace tyndall {
-// Sixteen cells that a ray crosses; those that are not there have no length.
+// Sixteen cells that a ray crosses; unused ones have zero length.
 struct CrossedCells {
-    uint32_t pairs[4][16]; // of half floats, neighbours along z: those at y and y + 1, and the same at x + 1
-    float middle[3][16];   // of the stretch inside, from the cell's corner
-    float half[16];        // of the stretch's length, metres
-    float direction[3];    // in voxels per metre
+    uint32_t pairs[4][16]; // half floats adjacent in z: at y, y + 1, and both again at x + 1
+    float middle[3][16];   // midpoint of the ray segment, relative to the cell's corner
+    float half[16];        // half of the segment's length, meters
+    float direction[3];    // in voxels per meter
 };
 }
 #endif
@@ -57,13 +57,14 @@ namespace tyndall {
 HWY_EXPORT(column_kernel);
 
 namespace {
-// Integral of exp(-max(height, 0) / falloff) over `length` metres of a line that starts at `height` and rises by
-// `slope` per metre. Each part counts from its lower end: exp(-h/H) H/|s| (1 - exp(-|s| L/H)), without overflow or
-// cancellation.
+// Integral of exp(-max(height, 0) / falloff) over `length` meters of a line that starts at `height` and rises by
+// `slope` per meter. The part above 0 is evaluated from its lower end, exp(-h/H) H/|s| (1 - exp(-|s| L/H)), to avoid
+// overflow and cancellation.
 double height_column(double height, double slope, double length, double falloff) {
     if (slope == 0) {
         const double density = std::exp(-std::max(height, 0.0) / falloff);
-        return static_cast<float>(density) == 0 ? 0 : length * density; // as floats hold it: rays may be endless
+        // Treat densities that underflow in float as 0: rays may be infinite.
+        return static_cast<float>(density) == 0 ? 0 : length * density;
     }
     const double lower = slope > 0 ? height : height + slope * length, rate = std::abs(slope) / falloff;
     const double below = std::clamp(-lower / std::abs(slope), 0.0, length);
@@ -71,13 +72,13 @@ double height_column(double height, double slope, double length, double falloff)
     return below + std::exp(-std::max(lower, 0.0) / falloff) * -std::expm1(-rate * above) / rate;
 }
 
-// Density integrated over the cells that a ray crosses, sixteen at a time.
+// Integrates density over the cells that a ray crosses, sixteen at a time.
 class CellSum {
 public:
     explicit CellSum(const LocalRay& ray) : ray_(ray) {
         for (int axis = 0; axis < 3; ++axis) cells_.direction[axis] = static_cast<float>(ray.direction[axis]);
     }
-    // `values` are those of the brick whose first cell is `first`.
+    // `values` belong to the brick whose first cell is `first`.
     void add(const uint16_t* values, ivec3 first, ivec3 cell, double low, double high) {
         const ivec3 in = cell - first;
         const uint16_t* corner = values + (in.x * 9 + in.y) * 9 + in.z;
@@ -104,7 +105,7 @@ private:
 
     const LocalRay& ray_;
     CrossedCells cells_{};
-    const uint16_t* corners_[16]; // of each cell: its first value
+    const uint16_t* corners_[16]; // first value of each cell
     size_t count_ = 0;
     double sum_ = 0;
 };
@@ -127,7 +128,7 @@ double brick_column(const BrickPool& pool, const Ray& ray) {
     return constant + cells.sum();
 }
 
-// Density integrated along the ray, in metres.
+// Density integrated along the ray, in meters.
 double density_column(const Medium& medium, const Ray& ray) {
     if (medium.density.kind == DensityKind::bricks) return brick_column(*medium.density.bricks, ray);
     const Interval<double> inside =

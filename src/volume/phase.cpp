@@ -1,4 +1,4 @@
-// Phase functions put together, and directions distributed as they say, by inverting their cumulative distributions.
+// Constructs phase functions and samples directions by inverting their cumulative distributions.
 #include "volume/phase.h"
 
 #include "volume/phase/mie.h"
@@ -11,7 +11,7 @@ Phase shaped(PhaseKind kind, PhaseShape shape) {
     return {kind, 0, std::make_shared<const PhaseShape>(std::move(shape))};
 }
 
-// The lobes a phase function is made of; none have no light.
+// The lobes of a phase function.
 std::vector<PhaseLobe> lobes_of(const Phase& phase) {
     if (phase.shape) return phase.shape->lobes;
     assert(phase.kind != PhaseKind::schlick);
@@ -24,7 +24,7 @@ void add_lobes(const Phase& phase, double share, std::vector<PhaseLobe>& lobes) 
             lobes.push_back(make_lobe(share * lobe.weight, lobe.g, lobe.alpha));
 }
 
-// Cosine below which the share u of the scattered light lies.
+// Inverse CDF: the cosine below which a fraction u of the scattered light lies.
 double sampled_cosine(const Phase& phase, double u) {
     switch (phase.kind) {
     case PhaseKind::isotropic:

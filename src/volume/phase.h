@@ -1,5 +1,5 @@
-// Phase functions: how fog spreads the light it scatters. Each integrates to 1 over the sphere.
-// cosine = dot(light travel, travel towards the eye): +1 looking straight into the light.
+// Phase functions, normalized to integrate to 1 over the sphere.
+// cosine = dot(light direction of travel before and after scattering): +1 is forward, looking into the light.
 #pragma once
 #include "base/math.h"
 #include "volume/phase/shape.h"
@@ -15,15 +15,15 @@ enum class PhaseKind { isotropic, henyey_greenstein, schlick, rayleigh, draine, 
 struct Phase {
     PhaseKind kind = PhaseKind::henyey_greenstein;
     float g = 0;                               // mean cosine, -1..1; above 0 scatters forward
-    std::shared_ptr<const PhaseShape> shape{}; // of the kinds from Draine's on; they have no g
+    std::shared_ptr<const PhaseShape> shape{}; // for draine and later kinds, which do not use g
 };
 
 inline constexpr float largest_g = 0.99f; // beyond it the lobe is narrower than a pixel
 
 struct PhaseTraits {
-    std::string_view name;     // in scene files
+    std::string_view name;     // as in scene files
     float max_g = 0;           // 0 = takes no g
-    std::string_view beyond{}; // what is wrong with a larger one, and what to use
+    std::string_view beyond{}; // error for a larger |g|, and what to use instead
 };
 inline constexpr PhaseTraits phase_kinds[] = {
     {.name = "isotropic"},
@@ -41,14 +41,14 @@ inline constexpr PhaseTraits phase_kinds[] = {
 constexpr const PhaseTraits& traits_of(PhaseKind kind) { return phase_kinds[static_cast<int>(kind)]; }
 constexpr bool takes_g(PhaseKind kind) { return traits_of(kind).max_g > 0; }
 
-// Droplets have a diameter in micrometres, above 0 to largest_droplet (volume/phase/mie.h). A mix holds a share of the
-// first, 0..1, and the rest of the second; neither is Schlick's or a table. Tables keep their kind.
+// Droplet diameters are in micrometers, above 0 and up to largest_droplet (volume/phase/mie.h). A mix has a share 0..1
+// of the first and the rest of the second, neither of which may be Schlick's or a table. Tables keep their kind.
 Phase draine_phase(double g, double alpha);
 Phase mie_phase(double droplet_diameter);
 Phase mixed_phase(double share, const Phase& first, const Phase& second);
 Phase table_phase(PhaseKind kind, PhaseTable table);
 
-// Its mean over discs of an angular radius below 0.15 radians, as a table; of the kinds from Draine's on.
+// The phase function averaged over discs of an angular radius below 0.15 radians, as a table; draine and later kinds.
 Phase widened(const Phase& phase, double radius);
 
 inline float mean_cosine(const Phase& phase) {
@@ -56,15 +56,15 @@ inline float mean_cosine(const Phase& phase) {
     return takes_g(phase.kind) ? std::clamp(phase.g, -largest_g, largest_g) : 0;
 }
 
-// |g| of the narrowest lobe: how finely directions have to be looked at.
+// |g| of the narrowest lobe, which determines the required angular resolution.
 inline float narrowest_lobe(const Phase& phase) {
     return phase.shape ? phase.shape->narrowest : std::abs(mean_cosine(phase));
 }
 
-// A number that no value falls below, 1/sr: the least one, but for the last digits; 0 where values may be 0.
+// A lower bound of the phase function, 1/sr, tight up to rounding; 0 if values may be 0.
 double min_phase_value(const Phase& phase);
 
-// Value in 1/sr, to the rounding of T.
+// Value in 1/sr, in the precision of T.
 template<class T> T phase_value_of(const Phase& phase, T cosine) {
     constexpr T circle = std::numbers::pi_v<T>;
     const T mean = phase.g;
@@ -74,7 +74,8 @@ template<class T> T phase_value_of(const Phase& phase, T cosine) {
     case PhaseKind::rayleigh:
         return 3 / (16 * circle) * (1 + cosine * cosine);
     case PhaseKind::henyey_greenstein: {
-        // (1-|g|)² + 2|g|(1-c), c measured from the lobe, is 1+g²-2g·cosine without its cancellation in the lobe.
+        // (1-|g|)² + 2|g|(1-c), c measured from the lobe axis, equals 1+g²-2g·cosine without cancellation near the
+        // axis.
         const T g = std::min<T>(std::abs(mean), largest_g), c = mean < 0 ? -cosine : cosine;
         const T q = std::max<T>((1 - g) * (1 - g) + 2 * g * (1 - c), 1e-7f);
         return (1 - g * g) / (4 * circle * q * std::sqrt(q));
@@ -91,9 +92,9 @@ template<class T> T phase_value_of(const Phase& phase, T cosine) {
 
 inline float phase_value(const Phase& phase, float cosine) { return phase_value_of<float>(phase, cosine); }
 
-// The largest value of its lobes, straight on or back, 1/sr.
+// The larger of the values in the forward and backward directions, 1/sr.
 inline float phase_peak(const Phase& phase) { return std::max(phase_value(phase, 1.0f), phase_value(phase, -1.0f)); }
 
-// A direction picked with density phase_value(phase, dot(direction, result)), by two numbers in [0,1).
+// Samples a direction with PDF phase_value(phase, dot(direction, result)) from two numbers in [0,1).
 vec3 sample_phase(const Phase& phase, vec3 direction, vec2 u);
 }

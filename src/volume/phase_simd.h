@@ -1,4 +1,4 @@
-// Phase functions of sixteen cosines, inside kernels compiled per instruction set (base/simd/simd.h says how).
+// Phase functions at sixteen cosines, for kernels compiled per instruction set (see base/simd/simd.h).
 #if defined(TYNDALL_VOLUME_PHASE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_PHASE_SIMD_H
 #undef TYNDALL_VOLUME_PHASE_SIMD_H
@@ -11,14 +11,14 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// As lobe_value().
+// SIMD version of lobe_value().
 HWY_INLINE Floats lobe_value(const PhaseLobe& lobe, const Floats& cosine) {
     const Floats beside = max(1.0f - (lobe.g < 0 ? -cosine : cosine), 0.0f);
     const Floats q = fused(beside, lobe.slope, lobe.gap);
     return fused(cosine * cosine, lobe.scale_of_square, lobe.scale) / (q * sqrt(q));
 }
 
-// As table_value().
+// SIMD version of table_value().
 HWY_INLINE Floats table_value(const PhaseTable& table, const Floats& cosine) {
     const float half = static_cast<float>(table.half);
     const Floats square = max(1.0f - abs(cosine), 0.0f) * (half * half);
@@ -31,7 +31,7 @@ HWY_INLINE Floats table_value(const PhaseTable& table, const Floats& cosine) {
     return fused(share, to - from, from);
 }
 
-// As shape_value(). Out of line: it is no part of the loops that know nothing of shapes.
+// SIMD version of shape_value(). Not inlined, to keep it out of loops over simpler phase functions.
 HWY_NOINLINE inline Floats shape_value(const PhaseShape& shape, const Floats& cosine) {
     if (shape.lobes.empty()) return table_value(shape.table, cosine);
     Floats sum = 0.0f;
@@ -39,7 +39,7 @@ HWY_NOINLINE inline Floats shape_value(const PhaseShape& shape, const Floats& co
     return sum;
 }
 
-// As phase_value() of volume/phase.h, to float rounding.
+// SIMD version of phase_value() (volume/phase.h), equal up to float rounding.
 HWY_INLINE Floats phase_value(const Phase& phase, const Floats& cosine) {
     switch (phase.kind) {
     case PhaseKind::isotropic:

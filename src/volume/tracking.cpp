@@ -1,4 +1,4 @@
-// Delta and ratio tracking over the stretches of constant majorant that each kind of fog offers.
+// Delta and ratio tracking over the constant-majorant segments of each kind of fog.
 #include "volume/tracking.h"
 
 #include "volume/bricks/brick_walk.h"
@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-// Fog between two distances along a ray, and bounds of its density there.
+// A segment of fog along a ray, with bounds of its density.
 struct Fog {
     double low = 0, high = 0;
     float minimum = 0, majorant = 0;
@@ -17,7 +17,7 @@ struct Fog {
 
 float mixed(float a, float b, float weight) { return a + weight * (b - a); }
 
-// Trilinear density of a brick at a point in its own coordinates, 0..8.
+// Trilinear density of a brick at a point in brick coordinates, 0..8.
 float brick_value(const uint16_t* values, vec3 point) {
     const vec3 inside = glm::clamp(point, vec3(0), vec3(8));
     const ivec3 cell = glm::min(ivec3(inside), ivec3(7));
@@ -42,7 +42,7 @@ void walk_brick_fog(const BrickPool& pool, const Ray& ray, Interval<double> rang
     });
 }
 
-// Height fog in layers half a scale height thick, up to where it is thinner than 2^-24.
+// Height fog in layers of half a scale height, up to a density of about 2^-24.
 template<class Visit>
 void walk_height_fog(const Medium& medium, const Ray& ray, Interval<double> range, const Visit& visit) {
     constexpr int layers = 34;
@@ -53,7 +53,7 @@ void walk_height_fog(const Medium& medium, const Ray& ray, Interval<double> rang
     };
     if (slope == 0) return void(visit(Fog{range.low, range.high, density(0), density(0)}, density));
 
-    // Layer 0 lies below the base, layer k between (k-1)/2 and k/2 scale heights above it.
+    // Layer 0 is below the base, layer k spans (k-1)/2 to k/2 scale heights above it.
     for (int i = 0; i <= layers && !range.empty(); ++i) {
         const int layer = slope > 0 ? i : layers - i;
         const double top = (0.5 * falloff * layer - start) / slope,
@@ -66,7 +66,7 @@ void walk_height_fog(const Medium& medium, const Ray& ray, Interval<double> rang
     }
 }
 
-// Calls visit(fog, density at a distance) for the stretches of the ray in order until it returns false.
+// Calls visit(fog, density function of t) for the segments of the ray in order until it returns false.
 template<class Visit> void walk_fog(const Medium& medium, const Ray& ray, Interval<float> range, const Visit& visit) {
     const Interval<double> whole{range.low, range.high};
     if (medium.density.kind == DensityKind::bricks) return walk_brick_fog(*medium.density.bricks, ray, whole, visit);
@@ -81,7 +81,7 @@ double free_depth(float u) { return -std::log1p(-static_cast<double>(u)); }
 
 float collision_distance(const Medium& medium, const Ray& ray, Interval<float> range, float first, RandomStream& random,
                          int& lookups) {
-    double left = free_depth(first), found = infinity; // optical depth, by majorants, to the next collision
+    double left = free_depth(first), found = infinity; // majorant optical depth to the next tentative collision
     walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
         const double majorant = static_cast<double>(grey_extinction(medium.optics)) * fog.majorant;
         for (double t = fog.low; majorant > 0;) {
@@ -105,12 +105,12 @@ float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> 
         return static_cast<float>(std::exp(-optical_depth(medium, {ray.at(range.low), ray.direction, range.length()})));
     constexpr double small = 0.1, often = 4;
     const double extinction = grey_extinction(medium.optics);
-    double share = 1, certain = 0; // what passes, and the depth of the least densities it has yet to be dimmed by
+    double share = 1, certain = 0; // transmittance so far, and control optical depth not yet applied to it
     double left = free_depth(random.next());
     walk_brick_fog(*medium.density.bricks, ray, {range.low, range.high}, [&](const Fog& fog, const auto& density) {
         certain += extinction * fog.minimum * (fog.high - fog.low);
         if (certain > small) share *= std::exp(-certain), certain = 0;
-        // Noise counts by the light that is left: the best rate of lookups is in proportion to it.
+        // Variance scales with the remaining light, so the optimal rate of lookups is proportional to it.
         const double varying = extinction * (fog.majorant - fog.minimum);
         for (double t = fog.low; varying > 0;) {
             const double rate = std::max(1.0, often * share) * varying, step = left / rate;

@@ -1,4 +1,4 @@
-// What a scene makes of the numbers in a grid: scale and offset, limits, a table; or a level set as fog.
+// A scene's mapping of grid values: scale and offset, limits and a table, or conversion of a level set to fog.
 #pragma once
 #include "base/math.h"
 
@@ -9,13 +9,12 @@ namespace tyndall {
 struct ValueMap {
     float scale = 1, offset = 0;
     Interval<float> clamp{-infinity, infinity};
-    std::vector<vec2>
-        table;       // value and what becomes of it, ascending; straight between, the ends hold; empty = as it is
-    float width = 0; // above 0: of a level set, clamp(-distance / width, 0, 1) before all else
+    std::vector<vec2> table; // (value, result), ascending; linear between, clamped at the ends; empty = identity
+    float width = 0;         // above 0: level set, converted first by clamp(-distance / width, 0, 1)
 
-    // table(clamp(scale · value + offset)); what is not a number stays so.
+    // table(clamp(scale · value + offset)); NaN is passed through.
     float operator()(float value) const;
     bool changes_nothing() const;
-    std::string text() const; // the same for the same map, in keys
+    std::string text() const; // identifies the map in cache keys; empty for the identity
 };
 }

@@ -8,14 +8,14 @@
 
 namespace tyndall {
 namespace {
-// Lines of a block of a picture without tiles.
+// Scanlines per block.
 int lines_of(ExrCompression compression) {
     constexpr int lines[] = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
     return lines[static_cast<size_t>(compression)];
 }
 
-// Bytes that run lengths stand for (OpenEXR's RLE: a count of -n is followed by n bytes, of n by one to repeat n + 1
-// times); nothing where they end early.
+// Decoded size of RLE data in bytes (OpenEXR: a count of -n is followed by n literal bytes, a count of n by one byte to
+// repeat n + 1 times); nothing if the data are truncated.
 std::optional<uint64_t> unpacked_run_lengths(std::string_view packed) {
     uint64_t result = 0;
     for (size_t i = 0; i < packed.size();) {
@@ -34,11 +34,11 @@ std::optional<uint64_t> unpacked_zip(std::string_view packed, std::vector<unsign
     return size;
 }
 
-// Bytes of the pixels from one corner to the other, both included.
+// Uncompressed bytes of the pixels in the inclusive rectangle from..to.
 uint64_t whole_bytes(const ExrPartClaims& part, ivec2 from, ivec2 to) {
     uint64_t bytes = 0;
     for (const ExrChannelClaim& channel : part.channels) {
-        const auto values = [&](int first, int last) { // multiples of the step in first..last
+        const auto values = [&](int first, int last) { // sampled positions (multiples of the step) in first..last
             const auto below = [&](int n) { return static_cast<int>(std::floor(double(n) / channel.step)); };
             return static_cast<uint64_t>(below(last) - below(first - 1));
         };
@@ -47,11 +47,11 @@ uint64_t whole_bytes(const ExrPartClaims& part, ivec2 from, ivec2 to) {
     return bytes;
 }
 
-// A block of pixels: what stands before its bytes, and how large it is.
+// What is expected of one block of pixels: the fields of its header and its size.
 struct ExrBlock {
     std::string name;
-    std::vector<int32_t> place; // the part of a file of several; first line, or tile and level
-    uint64_t whole = 0;         // bytes, unpacked
+    std::vector<int32_t> place; // part number if multipart; then first scanline, or tile and level
+    uint64_t whole = 0;         // uncompressed bytes
 };
 
 void check_block(ExrCursor& table, std::string_view file, const ExrPartClaims& part, const ExrBlock& expected,
@@ -66,7 +66,7 @@ void check_block(ExrCursor& table, std::string_view file, const ExrPartClaims& p
     if (!belongs || !fits) refuse(table.file, expected.name + " is damaged");
 
     const std::string_view packed = block.bytes(static_cast<size_t>(size));
-    if (packed.size() == expected.whole) return; // what does not get smaller is stored as it is
+    if (packed.size() == expected.whole) return; // blocks that do not shrink are stored uncompressed
     std::optional<uint64_t> unpacked = packed.size();
     if (part.compression == ExrCompression::rle) unpacked = unpacked_run_lengths(packed);
     if (part.compression == ExrCompression::zips || part.compression == ExrCompression::zip) {
@@ -77,7 +77,7 @@ void check_block(ExrCursor& table, std::string_view file, const ExrPartClaims& p
         refuse(table.file, expected.name + " is damaged");
 }
 
-// Calls visit(block) for each in the order of the table.
+// Calls visit(block) for each block in offset-table order.
 template<class Visit> void visit_lines(const ExrPartClaims& part, std::vector<int32_t> place, const Visit& visit) {
     const int lines = lines_of(part.compression);
     place.push_back(0);
@@ -91,7 +91,7 @@ template<class Visit> void visit_lines(const ExrPartClaims& part, std::vector<in
 template<class Visit> void visit_tiles(const ExrPartClaims& part, std::vector<int32_t> place, const Visit& visit) {
     const ivec2 tiles = (part.high - part.low + part.tile) / part.tile;
     const size_t first = place.size();
-    place.resize(first + 4); // column, row, level across and down
+    place.resize(first + 4); // column, row, level in x and y
     for (int y = 0; y < tiles.y; ++y)
         for (int x = 0; x < tiles.x; ++x) {
             const ivec2 from = part.low + ivec2(x, y) * part.tile, to = glm::min(from + part.tile - 1, part.high);

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 10> compression_names = {"none",  "rle", 
 
 enum : uint32_t { tiled_flag = 0x200, long_names_flag = 0x400, deep_flag = 0x800, multipart_flag = 0x1000 };
 
-// How small pixels may get: deflate has a ratio of 1032, and DWA first makes one number of 64 of them.
+// Upper bound on the compression ratio: deflate reaches 1032, and DWA can first reduce 64 values to one.
 uint64_t best_ratio(ExrCompression compression) { return compression >= ExrCompression::dwaa ? 64 * 1032 : 2 * 1032; }
 
 void read_channels(ExrCursor cursor, ExrPartClaims& claims) {
@@ -56,7 +56,7 @@ void read_tiles(ExrCursor cursor, ExrPartClaims& claims) {
         refuse(cursor.file, "the tiles are larger than 4096 x 4096 pixels");
 }
 
-// Red, green, blue and white of ITU-R BT.709 as x and y; two digits are what files round to.
+// ITU-R BT.709 primaries and white point as x, y; the tolerance allows for files that round to two digits.
 bool are_rec709(ExrCursor cursor) {
     constexpr float expected[] = {.64f, .33f, .3f, .6f, .15f, .06f, .3127f, .329f};
     for (const float value : expected)
@@ -64,7 +64,7 @@ bool are_rec709(ExrCursor cursor) {
     return true;
 }
 
-// Names that are there once and of one type; other attributes with such a name are refused.
+// Attributes that may occur only once and with one type; anything else under these names is refused.
 struct ExpectedAttributes {
     enum Kind { channels, data_window, display_window, compression, tiles, kinds };
     static constexpr std::array<std::pair<std::string_view, std::string_view>, kinds> names = {
@@ -104,7 +104,7 @@ void read_expected(ExpectedAttributes::Kind kind, ExrCursor value, ExrPartClaims
     }
 }
 
-// Of other attributes those that tell how to read the part.
+// The remaining attributes that affect how the part is read.
 void read_other(std::string_view name, ExrCursor value, bool multipart, ExrPartClaims& claims) {
     if (name == "type") {
         if (value.left != "scanlineimage" && value.left != "tiledimage")
@@ -119,7 +119,7 @@ void read_other(std::string_view name, ExrCursor value, bool multipart, ExrPartC
     }
 }
 
-// The pixels must fit in memory, and no compression may have made the file as small as it is if it is too small.
+// The pixels must fit in memory, and the file must be at least as large as the best compression ratio allows.
 void check_amount(const ExrPartClaims& claims, uint64_t file_bytes, const std::string& file) {
     const ivec2 size = claims.high - claims.low + 1;
     if (size.x > largest_side || size.y > largest_side) refuse(file, "the image is larger than 16384 x 16384 pixels");
@@ -142,7 +142,7 @@ void check_amount(const ExrPartClaims& claims, uint64_t file_bytes, const std::s
         refuse(file, "the file is too short for its tiles: cut off or damaged");
 }
 
-// Returns false at the end of the headers.
+// Reads one part's header. Returns false at the end of the headers of a multipart file.
 bool read_header(ExrCursor& cursor, uint32_t flags, ExrPartClaims& claims) {
     const bool multipart = flags & multipart_flag;
     claims.tiled = flags & tiled_flag;

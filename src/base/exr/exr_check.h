@@ -1,4 +1,4 @@
-// What an EXR file claims, checked before the library sees it. For the EXR files of this folder only.
+// What an EXR file's headers claim, checked before the OpenEXR library sees the file. Internal to this folder.
 #pragma once
 #include "base/math.h"
 
@@ -8,39 +8,39 @@
 #include <vector>
 
 namespace tyndall {
-// As files number them.
+// In the numbering of the file format.
 enum class ExrCompression : uint8_t { none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa, dwab };
 std::string_view name_of(ExrCompression compression);
 
 struct ExrChannelClaim {
     std::string name;
-    int bytes = 4; // of a value
-    int step = 1;  // pixels from one value to the next, across and down
+    int bytes = 4; // per value
+    int step = 1;  // subsampling: pixels between values, in x and y
 };
 
 struct ExrPartClaims {
     ivec2 display_low{0}, display_high{0};
-    ivec2 low{0}, high{0}; // data window, both corners included
+    ivec2 low{0}, high{0}; // data window, inclusive
     ExrCompression compression = ExrCompression::none;
     std::vector<ExrChannelClaim> channels;
     bool tiled = false;
     ivec2 tile{0};
-    bool cube = false;              // a picture of all directions as the faces of a cube
-    bool foreign_primaries = false; // says that its colours are of other primaries than Rec.709
-    uint64_t chunks = 0;            // of files of several parts: entries of its table
+    bool cube = false;              // environment map stored as cube faces
+    bool foreign_primaries = false; // the header states primaries other than Rec.709
+    uint64_t chunks = 0;            // entries in its offset table; multipart files only
 };
 
 struct ExrClaims {
     std::vector<ExrPartClaims> parts;
-    size_t tables = 0; // bytes before the tables of blocks
+    size_t tables = 0; // byte offset of the block offset tables
     bool multipart = false;
 };
 
-// Walks the headers. Throws Error (refused) unless all parts are flat pictures within limits.
+// Walks the headers. Throws Error (refused) unless all parts are flat (not deep) images within the limits.
 ExrClaims read_exr_claims(std::string_view bytes, const std::string& file);
 
-// Walks every block of pixels of a part, of its largest level. Throws Error (refused) unless each is where the tables
-// say and belongs there; of NONE, RLE, ZIPS and ZIP also unless it is whole, for the library fills gaps with what
-// memory happens to hold.
+// Walks every pixel block of a part at its largest level. Throws Error (refused) unless each block is where the offset
+// table says and carries the right coordinates; for NONE, RLE, ZIPS and ZIP also unless it decodes to its full size,
+// because the library leaves missing pixels uninitialized.
 void check_exr_blocks(std::string_view bytes, const ExrClaims& claims, size_t part, const std::string& file);
 }

@@ -1,4 +1,4 @@
-// Bytes of an OpenEXR file, read one after the other. For the files of this folder only.
+// Sequential reader over the bytes of an OpenEXR file. Internal to this folder.
 #pragma once
 #include "base/error.h"
 

@@ -17,7 +17,7 @@ namespace tyndall {
 namespace {
 constexpr uint64_t largest_file = uint64_t{4} << 30;
 
-// Whether the bytes are those that tyndall:check was made of.
+// True if the file's bytes still match its tyndall:check hash.
 bool is_unchanged(std::string_view bytes) {
     const size_t name = bytes.find(before_check), value = name + before_check.size();
     if (name == bytes.npos || value + no_check.size() > bytes.size()) return false;
@@ -25,7 +25,7 @@ bool is_unchanged(std::string_view bytes) {
     return content_hash(pieces) == bytes.substr(value, no_check.size());
 }
 
-// Where the pixels lie, and the header's attributes.
+// Windows, attributes and channel names from the header.
 ExrFile described(const Imf::Header& header) {
     const Imath::Box2i &window = header.dataWindow(), &display = header.displayWindow();
     ExrFile result;
@@ -38,7 +38,7 @@ ExrFile described(const Imf::Header& header) {
     return result;
 }
 
-// All channels of so many rows, as floats.
+// Decodes all channels of `count` rows as floats.
 void decode_rows(Imf::InputFile& input, int first, int count, ExrFile& file) {
     const Imath::Box2i window = input.header().dataWindow();
     const Imath::Box2i rows({window.min.x, window.min.y + first}, {window.max.x, window.min.y + first + count - 1});

@@ -28,7 +28,7 @@ bool has_colors(const ExrPartClaims& part) {
     return std::ranges::any_of(std::array{"R", "G", "B", "Y"}, [&](const char* c) { return channel_of(part, c); });
 }
 
-// The names of a few channels, for who has to choose others.
+// Names of the first few channels, for the error message.
 std::string some_channels(const ExrPartClaims& part) {
     std::string text;
     for (size_t n = 0; n < std::min<size_t>(part.channels.size(), 4); ++n)
@@ -42,7 +42,7 @@ struct Chosen {
     const ExrPartClaims& part() const { return claims.parts[index]; }
 };
 
-// The first part with colours.
+// Chooses the first part with color channels.
 Chosen choose_part(std::string_view bytes, const std::string& where) {
     Chosen chosen{read_exr_claims(bytes, where), 0};
     const std::vector<ExrPartClaims>& parts = chosen.claims.parts;
@@ -60,7 +60,7 @@ Chosen choose_part(std::string_view bytes, const std::string& where) {
     return chosen;
 }
 
-// Channels with a value for each pixel.
+// Decodes full-resolution channels.
 void decode_channels(Imf::IStream& stream, const Chosen& chosen, ExrPicture& picture) {
     const ExrPartClaims& part = chosen.part();
     const bool colored = channel_of(part, "R") || channel_of(part, "G") || channel_of(part, "B");
@@ -80,7 +80,7 @@ void decode_channels(Imf::IStream& stream, const Chosen& chosen, ExrPicture& pic
     for (vec3& pixel : picture.color.pixels) pixel = vec3(pixel.x);
 }
 
-// Luminance of each pixel and chroma of each fourth, which the library filters.
+// Decodes luminance with subsampled chroma, which the library upsamples.
 void decode_chroma(Imf::IStream& stream, ExrPicture& picture) {
     Imf::RgbaInputFile input(stream, 0);
     const Imath::Box2i window = input.dataWindow();

@@ -1,4 +1,4 @@
-// OpenEXR pictures by any program, as colours: environments, gobos, backgrounds.
+// RGB images from OpenEXR files of any program: environments, gobos, backgrounds.
 #pragma once
 #include "base/image.h"
 
@@ -7,17 +7,17 @@
 
 namespace tyndall {
 struct ExrPicture {
-    ivec2 display{0}, low{0};       // display window's size; first pixel of the data window within it
-    Image<vec3> color;              // of the data window; of grey files Y thrice
-    bool foreign_primaries = false; // the file says that its colours are of others than Rec.709
+    ivec2 display{0}, low{0};       // size of the display window; origin of the data window within it
+    Image<vec3> color;              // of the data window; Y in all three components for gray files
+    bool foreign_primaries = false; // the header states primaries other than Rec.709
 };
 
-// Size of the display window of the part that has colours, from the header alone. Throws Error (refused) naming
-// `where`.
+// Size of the display window of the first part with color channels, from the header alone. Throws Error (refused)
+// naming `where`.
 ivec2 exr_display_size(std::string_view bytes, const std::string& where);
 
-// R, G and B, luminance and chroma (in half floats) or Y, of any compression, of lines or the largest level of tiles,
-// of the first part that has them. Throws Error (refused) naming `where`: none of these, deep, a cube, damaged, over
-// limits.
+// Decodes R, G and B, luminance and chroma (as half floats), or Y from the first part that has them; any compression,
+// scanlines or the largest level of tiles. Throws Error (refused) naming `where` if no part has such channels or the
+// file is deep, a cube map, damaged or over the limits.
 ExrPicture decode_exr_picture(std::string_view bytes, const std::string& where);
 }

@@ -1,4 +1,4 @@
-// The OpenEXR library on bytes in memory. For the files of this folder only.
+// Lets the OpenEXR library read from memory. Internal to this folder.
 #pragma once
 #include "base/error.h"
 
@@ -29,7 +29,7 @@ private:
     size_t position_ = 0;
 };
 
-// What the library throws is a damaged file.
+// Runs `body`; reports anything the library throws as a damaged file.
 template<class Body> auto guarded_exr(const std::string& file, const Body& body) {
     try {
         return body();
@@ -38,7 +38,7 @@ template<class Body> auto guarded_exr(const std::string& file, const Body& body)
     } catch (const Error&) {
         throw;
     } catch (const std::exception&) {
-        refuse(file, "the file is cut off or damaged"); // the library's reason names its own parts
+        refuse(file, "the file is cut off or damaged"); // the library's message exposes its internals
     }
 }
 }

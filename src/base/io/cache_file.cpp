@@ -13,7 +13,7 @@ struct CacheHeader {
     std::array<char, 16> magic{};
     uint64_t body_bytes = 0;
     double seconds = 0;
-    std::array<char, 32> made_from{}, body_hash{}, header_hash{}; // the last one of all before it
+    std::array<char, 32> made_from{}, body_hash{}, header_hash{}; // header_hash covers all fields before it
 };
 static_assert(sizeof(CacheHeader) == 2 * cache_alignment);
 

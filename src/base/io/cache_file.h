@@ -1,8 +1,8 @@
-// One thing that was costly to make, as a file: a header, then the bytes of its fields, arrays where vectors can load
-// them. The layout is that of this build's structs; names of files hold the build (cache_folder.h).
+// One expensive precomputed object as a file: a header, then the bytes of its fields, with arrays aligned for SIMD
+// loads. The layout is that of this build's structs, so file names include the build (cache_folder.h).
 //
-// A struct says its fields once, for reading and writing: template<class Visit> void fields(Thing&, Visit&&), which
-// calls visit(member) for each.
+// A struct lists its fields once, for both reading and writing, in template<class Visit> void fields(Thing&, Visit&&),
+// which calls visit(member) for each.
 #pragma once
 #include "base/io/mapped_file.h"
 #include "base/shared_array.h"
@@ -17,26 +17,26 @@
 #include <vector>
 
 namespace tyndall {
-// An open file whose header is right.
+// An open file whose header is valid.
 struct CacheFile {
     MappedFile file;
     std::string_view body;
     std::string hash;   // of the body
-    double seconds = 0; // that making the thing took
+    double seconds = 0; // that building the object took
 };
 
-// `made_from`: 32 hex digits that tell what the thing depends on; `seconds`: what making it took. Returns the hash of
-// the body. Throws Error (unwritable); a final name only ever holds a complete file.
+// `made_from`: 32 hex digits that identify the object's inputs; `seconds`: the time it took to build. Returns the hash
+// of the body. Throws Error (unwritable). The write is atomic: `path` never names a partial file.
 std::string write_cache_file(const std::filesystem::path& path, std::string_view made_from, double seconds,
                              std::span<const std::string_view> body);
 
-// Bytes of a file with a body of so many.
+// Size in bytes of a file with this body.
 uint64_t cache_file_size(std::span<const std::string_view> body);
 
-// Throws Error: unreadable; refused, where the header is damaged or of something else.
+// Throws Error: unreadable; refused if the header is damaged or belongs to another object.
 std::shared_ptr<const CacheFile> open_cache_file(const std::filesystem::path& path, std::string_view made_from);
 
-// Reads every byte. Throws Error (refused) where one is not as it was written.
+// Reads every byte of the body and compares its hash. Throws Error (refused) on a mismatch.
 void check_body(const CacheFile& file);
 
 inline constexpr size_t cache_alignment = 64; // of arrays
@@ -44,7 +44,7 @@ inline constexpr size_t cache_alignment = 64; // of arrays
 template<class T>
 concept PlainBytes = std::is_trivially_copyable_v<T>;
 
-// Puts fields down as pieces of a body. Arrays are not copied: they have to live on.
+// Collects fields as pieces of a body. Arrays are not copied and must outlive the writer.
 class CacheWriter {
 public:
     template<PlainBytes T> void operator()(const T& value) {
@@ -75,7 +75,7 @@ private:
     size_t size_ = 0;
 };
 
-// Takes fields from a body in the same order. Shared arrays stay in the file. Throws Error (refused).
+// Reads fields from a body in the order written. Shared arrays point into the mapped file. Throws Error (refused).
 class CacheReader {
 public:
     explicit CacheReader(std::shared_ptr<const CacheFile> file) : file_(std::move(file)) {}
@@ -94,7 +94,7 @@ public:
         const std::span<const T> array = take_array<T>();
         if (!array.empty()) values = std::make_shared<const std::vector<T>>(array.begin(), array.end());
     }
-    void finish() const; // all has to be read
+    void finish() const; // refuses unread bytes
 
 private:
     const char* take(size_t count, size_t size);

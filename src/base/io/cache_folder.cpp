@@ -7,12 +7,12 @@
 
 namespace tyndall {
 namespace {
-std::string made_from_of(const std::string& name) { // its last 32 digits
+std::string made_from_of(const std::string& name) { // the 32 digits before the extension
     const size_t end = name.rfind('.');
     return end == name.npos || end < 32 ? std::string() : name.substr(end - 32, 32);
 }
 
-// Vanished and cut files are unreadable rather than damaged: a network drive may show them later.
+// Missing and truncated files count as unreadable, not damaged: a network drive may complete them later.
 void check_size(const std::filesystem::path& path, uint64_t size, const CacheEntry& entry) {
     if (size != entry.stamp.size)
         fail(ExitCode::unreadable, path.string(),
@@ -31,7 +31,7 @@ std::shared_ptr<const CacheFile> opened(const std::filesystem::path& path, const
     return file;
 }
 
-// A copy in the local folder, made unless it is there. What was copied is checked on the way.
+// Path of the copy in the local folder, made if missing. The source is verified before it is copied.
 std::filesystem::path local_copy(const CacheFolder& folder, const std::string& name, const CacheEntry& entry) {
     std::filesystem::path copy = folder.local / name;
     std::error_code none;

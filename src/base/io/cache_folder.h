@@ -1,5 +1,5 @@
-// A folder of files that hold what is costly to make and the same in many processes. Files are named by a hash of all
-// that they depend on, written once and never changed.
+// A folder of cache files with expensive precomputed objects that many processes share. Each file is named by a hash of
+// everything it depends on, written once and never changed.
 #pragma once
 #include "base/clock.h"
 #include "base/io/cache_file.h"
@@ -11,61 +11,61 @@ namespace tyndall {
 // A file of the folder.
 struct CacheEntry {
     FileStamp stamp;  // as it was written
-    std::string hash; // of its body; empty = not known yet
+    std::string hash; // of its body; empty = unknown
 };
 
-enum class CostKind { cached, found, rebuilt, no_room }; // found: an earlier run had cached it
+enum class CostKind { cached, found, rebuilt, no_room }; // found: cached by an earlier run
 
-// What something costs every process that does not find it.
+// The build time of one object, paid by every process that does not find it in the cache.
 struct CacheCost {
     std::string what;
     double seconds = 0;
     CostKind kind = CostKind::rebuilt;
-    std::string file{}; // of the folder; empty = none
+    std::string file{}; // name in the folder; empty = none
 };
 
 struct CacheFolder {
     std::filesystem::path folder;
-    std::filesystem::path local{}; // copies are made and read here; empty = none
-    std::string build{};           // and instruction set: in all names
-    std::string plan{};            // hash of what the things of a frame are made for
+    std::filesystem::path local{}; // files are copied here and read from here; empty = none
+    std::string build{};           // build and instruction set; part of every name's hash
+    std::string plan{};            // hash of the plan that a frame's objects are built for
     std::shared_ptr<FileHashes> inputs = std::make_shared<FileHashes>();
-    std::map<std::string, CacheEntry> files{}; // that are there, by name
-    bool writes = false;                       // adds what is not there yet ...
-    uint64_t room = 0;                         // ... up to so many bytes
-    std::vector<CacheCost> costs{};            // of what was asked for since they were last taken out
+    std::map<std::string, CacheEntry> files{}; // existing files by name
+    bool writes = false;                       // may add missing files ...
+    uint64_t room = 0;                         // ... up to this many bytes
+    std::vector<CacheCost> costs{};            // of requests since the list was last cleared
     std::vector<std::weak_ptr<const CacheFile>> open{};
-    std::mutex mutex{}; // held to change any of it
+    std::mutex mutex{}; // guards all members
 };
 
 inline constexpr std::string_view cache_extension = ".cache";
 std::string cache_file_name(std::string_view what, std::string_view made_from); // light-grid-0123...ef.cache
 std::string made_from_hash(const CacheFolder& folder, std::string_view what, std::string_view content);
 
-// The file of that name, null where there is none. Where bytes may have changed since they were checked, they are
-// checked again. Throws Error: unreadable, where a file is gone or cut that should be there; refused.
+// The file for `what` and `made_from`, or null if the folder has none. Rehashes the body if it may have changed since
+// the last check. Throws Error: unreadable if a listed file is missing or truncated; refused.
 std::shared_ptr<const CacheFile> find_cache_file(CacheFolder& folder, const std::string& what,
                                                  const std::string& made_from);
 
-// Writes a thing, if there is room, and notes what it cost. Throws Error (unwritable).
+// Writes an object if there is room, and records its cost. Throws Error (unwritable).
 void keep_in_folder(CacheFolder& folder, const std::string& what, const std::string& made_from, double seconds,
                     const CacheWriter& fields);
 
-// Notes what something costs that is in no file; folder may be null.
+// Records the cost of an object; `folder` may be null.
 void note_cost(CacheFolder* folder, std::string_view what, double seconds, CostKind kind = CostKind::rebuilt,
                std::string file = {});
 
-// The time that making things took which were noted and not found.
+// Total build time of the recorded objects that were not found in the cache, in seconds.
 double noted_seconds(CacheFolder* folder);
 
-// Reads every byte of a file of the folder. Throws Error: unreadable, where it is gone or cut; refused.
+// Verifies every byte of a file in the folder. Throws Error: unreadable if it is missing or truncated; refused.
 void check_cache_file(const CacheFolder& folder, const std::string& name, const CacheEntry& entry);
 
-// Throws Error (unreadable) where a file was changed while it was open.
+// Throws Error (unreadable) if a file has changed while open.
 void check_unchanged(CacheFolder& folder);
 
-// A thing that `content` says all about, from a file of the folder or else made, and then kept where the folder is
-// written to. Without folder or content it is just made.
+// Returns the object that `content` fully determines: loaded from the folder, or built with make() and then stored if
+// the folder is writable. With no folder or empty content it is only built.
 template<class T, class Make>
 T found_or_made(CacheFolder* folder, const std::string& what, const std::string& content, const Make& make) {
     if (!folder) return make();

@@ -39,7 +39,7 @@ struct Murmur {
     uint64_t a = 0, b = 0, length = 0;
     std::string rest; // under 16 bytes
 
-    // Whole blocks of 16 bytes; leaves the others in `bytes`.
+    // Consumes whole 16-byte blocks and leaves the remainder in `bytes`.
     void add_blocks(std::string_view& bytes) {
         for (; bytes.size() >= 16; bytes.remove_prefix(16)) {
             a = std::rotl(a ^ scrambled_1(little_endian(bytes.substr(0, 8))), 27) + b;
@@ -50,7 +50,7 @@ struct Murmur {
     }
     void add(std::string_view bytes) {
         length += bytes.size();
-        if (!rest.empty()) { // completed first
+        if (!rest.empty()) { // complete the pending block first
             const size_t missing = std::min(16 - rest.size(), bytes.size());
             rest += bytes.substr(0, missing);
             bytes.remove_prefix(missing);

@@ -23,7 +23,7 @@ struct Input {
     int descriptor = -1;
     uint64_t size = 0;
 
-    // Not blocking, so that opening a pipe without a writer returns; only a regular file goes further.
+    // Nonblocking, so that opening a pipe without a writer returns; only regular files are accepted.
     explicit Input(const fs::path& path)
         : descriptor(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {
         if (descriptor < 0) fail_reading(path, errno);
@@ -43,7 +43,7 @@ struct Input {
     Input& operator=(const Input&) = delete;
 };
 
-// Where the bytes really go: a symbolic link stays, its target is replaced.
+// The path to replace: for a symbolic link its target, so that the link itself stays.
 fs::path final_path(const fs::path& path) {
     std::error_code error;
     if (!fs::is_symlink(path, error)) return path;
@@ -51,7 +51,7 @@ fs::path final_path(const fs::path& path) {
     return error ? path : target;
 }
 
-// Refuses a final name that a rename would destroy (directory, device, pipe) or that the file system cannot hold.
+// Refuses a final name that a rename would destroy (directory, device, pipe) or that the file system does not allow.
 void check_final_name(const fs::path& path) {
     if (!path.has_filename() || path.filename() == "." || path.filename() == "..")
         fail(ExitCode::unwritable, path.string(), "is not a file name");
@@ -79,7 +79,7 @@ std::string read_file(const fs::path& path, uint64_t most) {
     };
     check_size(input.size);
 
-    // Read to the end rather than to the announced size: the file may grow, and /proc announces nothing.
+    // Read to end of file rather than to the reported size: the file may grow, and /proc files report a size of 0.
     std::string bytes(input.size + 1, '\0');
     size_t filled = 0;
     for (;;) {

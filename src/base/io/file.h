@@ -1,4 +1,4 @@
-// Files read and written with every result checked. A final name only ever holds a complete file.
+// Reads and writes files with every result checked. Writes are atomic: a final name never refers to a partial file.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,30 +9,31 @@
 #include <vector>
 
 namespace tyndall {
-// The whole of a regular file. Throws Error: unreadable (missing, directory, device, pipe), refused (over `most`
+// The contents of a regular file. Throws Error: unreadable (missing, directory, device, pipe), refused (over `most`
 // bytes).
 std::string read_file(const std::filesystem::path& path, uint64_t most = uint64_t{64} << 20);
 
-// Of a name, in lower case: ".glb".
+// The extension in lower case, with its dot: ".glb".
 std::string lower_extension(const std::filesystem::path& path);
 
 // Throws unless the path is a readable regular file; returns its size in bytes.
 uint64_t check_readable(const std::filesystem::path& path);
 
-// Writes a temporary beside `path`, syncs it and renames it over `path`. Throws Error (unwritable) and leaves nothing.
+// Writes a temporary file next to `path`, syncs it and renames it over `path`. On failure throws Error (unwritable) and
+// removes the temporary.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::string_view> pieces);
 
-// Makes sure a file can be made in the directory of `path`, creating the directory when missing. Throws Error
+// Checks that a file can be created in the directory of `path`, creating the directory if missing. Throws Error
 // (unwritable).
 void check_output(const std::filesystem::path& path);
 
-// Removes temporaries of earlier, killed runs of this program in a directory (older than a day, or whose process is
+// Removes temporary files that killed runs of this program left in a directory (older than a day, or whose process is
 // gone).
 void sweep_temporaries(const std::filesystem::path& directory);
 
 // 128-bit content hash as 32 hex digits; stable across machines.
 std::string content_hash(std::string_view bytes);
-std::string content_hash(std::span<const std::string_view> pieces); // of the pieces joined
+std::string content_hash(std::span<const std::string_view> pieces); // of the concatenated pieces
 }

@@ -12,7 +12,7 @@
 
 namespace tyndall {
 namespace {
-// Hash of the hashes of a file's pieces, so that volumes of any size need little memory.
+// Hash of the hashes of a file's 1 MiB pieces, so that files of any size need little memory.
 std::string hash_of_file(const std::filesystem::path& path) {
     check_readable(path);
     std::ifstream stream(path, std::ios::binary);

@@ -1,4 +1,4 @@
-// Content hashes of whole files, each worked out once: a file counts as it was when it was first asked for.
+// Content hashes of whole files, each computed once: later changes to a file are not seen.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -6,7 +6,7 @@
 #include <string>
 
 namespace tyndall {
-// Size and time of the last change: a file that keeps both is taken for unchanged.
+// Size and modification time: a file that keeps both is assumed unchanged.
 struct FileStamp {
     uint64_t size = 0;
     int64_t changed = 0; // nanoseconds since 1970
@@ -22,16 +22,16 @@ struct StampedHash {
 };
 
 struct FileHashes {
-    std::map<std::filesystem::path, StampedHash> known{}; // stamps are those before reading
-    // Worked out by an earlier run, by absolute path: stand for files that keep their stamps. `recorded_in` names the
-    // file that says so.
+    std::map<std::filesystem::path, StampedHash> known{}; // by path as given; stamps are taken before reading
+    // From an earlier run, by absolute path; valid for files whose stamps still match. `recorded_in` names the file
+    // that lists them.
     std::map<std::filesystem::path, StampedHash> recorded{};
     std::filesystem::path recorded_in{};
 };
 
-// Absolute, without dots; what FileHashes::recorded goes by.
+// The absolute path without dot components: the key of FileHashes::recorded.
 std::filesystem::path normal_path(const std::filesystem::path& path);
 
-// Throws Error: unreadable; refused, where the file no longer has the content on record.
+// Throws Error: unreadable; refused if the file's content differs from the recorded hash.
 const std::string& file_hash(const std::filesystem::path& path, FileHashes& files);
 }

@@ -12,19 +12,19 @@ namespace tyndall {
 namespace fs = std::filesystem;
 
 namespace {
-// What stands around the number in the names of a pattern.
+// The text before and after the frame number in a pattern's file names.
 struct NameParts {
     std::string before, after;
 };
 
-// The names of frames 1 and -1 part where the number begins, those of 1 and 2 at its last digit.
+// The names of frames 1 and -1 first differ where the number begins, those of 1 and 2 at its last digit.
 NameParts split_name(const std::string& pattern) {
     const std::string one = frame_name(pattern, 1), minus_one = frame_name(pattern, -1), two = frame_name(pattern, 2);
     const auto begin = std::ranges::mismatch(one, minus_one).in1, last = std::ranges::mismatch(one, two).in1;
     return {std::string(one.begin(), begin), std::string(last + 1, one.end())};
 }
 
-// The frame a file name stands for; nothing unless the pattern gives that frame exactly this name.
+// Parses the frame number of a file name; false unless the pattern gives that frame exactly this name.
 bool parse_name(const std::string& name, const std::string& pattern, const NameParts& parts, int& frame) {
     if (name.size() <= parts.before.size() + parts.after.size() || !name.starts_with(parts.before) ||
         !name.ends_with(parts.after))
@@ -38,14 +38,14 @@ bool is_numbered(const std::string& name) {
     try {
         return has_frame_token(name);
     } catch (const Error& error) {
-        fail(ExitCode::refused, {}, error.what()); // the name is a scene's, not the command line's
+        fail(ExitCode::refused, {}, error.what()); // the name comes from a scene, not from the command line
     }
 }
 
 // Remainder that is never negative.
 int64_t modulo(int64_t value, int64_t period) { return (value % period + period) % period; }
 
-// The frame of the sequence that is shown at `frame`; nothing when a clip does not reach there.
+// The frame of the sequence shown at `frame`; nothing outside the range of a clip.
 std::optional<int64_t> mapped_frame(int64_t frame, int64_t first, int64_t last, SequenceMode mode) {
     if (frame >= first && frame <= last) return frame;
     const int64_t length = last - first + 1;
@@ -72,7 +72,7 @@ FileSequence find_sequence(const std::string& pattern, const fs::path& base_dire
     FileSequence sequence;
     sequence.pattern = path.string();
     std::error_code missing;
-    // A directory may be called anything, and so may a file that is there.
+    // Only the file name may hold a frame token, and an existing file is taken literally even if its name holds one.
     if (fs::is_regular_file(path, missing) || !is_numbered(name)) {
         check_readable(path);
         return sequence;

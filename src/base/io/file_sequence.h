@@ -1,4 +1,4 @@
-// Numbered files, of volumes or images, and which of them belongs to a frame.
+// Numbered sequences of volume or image files, and which file belongs to a frame.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace tyndall {
 enum class SequenceMode { hold, loop, ping_pong, clip }; // before the first and after the last file
-enum class MissingFrame { error, hold, skip };           // a gap inside: stop · use the nearest earlier · nothing
+enum class MissingFrame { error, hold, skip };           // at a gap: stop · use the nearest earlier file · use none
 inline const std::vector<std::string> missing_frame_names{"error", "hold", "skip"};
 
 struct FileSequence {
@@ -17,9 +17,10 @@ struct FileSequence {
     std::vector<int> files; // frames found on disk, ascending; empty for a single file
 };
 
-// Lists the files of the pattern. Throws Error (unreadable) when there is none.
+// Lists the files that match the pattern. Throws Error (unreadable) if there are none.
 FileSequence find_sequence(const std::string& pattern, const std::filesystem::path& base_directory);
 
-// The file for a scene frame; nothing where it has none (clip, skip). Throws Error (unreadable) for a gap.
+// The file for a scene frame; nothing if the frame has none (clip, skip). Throws Error (unreadable) at a gap with
+// MissingFrame::error.
 std::optional<std::filesystem::path> sequence_file(const FileSequence& sequence, int frame, MissingFrame missing);
 }

@@ -1,4 +1,4 @@
-// Numbered file names: one token of the spellings of Blender, printf, Houdini, RV and husk.
+// Numbered file names: one frame token in the syntax of Blender, printf, Houdini, RV or husk.
 #include "base/io/frames.h"
 
 #include "base/error.h"
@@ -13,7 +13,7 @@ constexpr size_t max_digits = 12;
 
 struct Token {
     size_t start = 0, length = 0;
-    size_t digits = 1; // least number of digits
+    size_t digits = 1; // minimum number of digits
 };
 
 [[noreturn]] void complain(std::string_view pattern, size_t column, const std::string& what) {
@@ -23,7 +23,7 @@ struct Token {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_word(char c) { return is_digit(c) || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
-// A decimal width at `at`, which moves behind it; more than three digits are as wrong as 999.
+// Parses a decimal width and moves `at` past it. Values stop growing once out of range; the caller rejects them.
 size_t width(std::string_view pattern, size_t& at) {
     size_t value = 0;
     for (; at < pattern.size() && is_digit(pattern[at]); ++at)
@@ -31,21 +31,21 @@ size_t width(std::string_view pattern, size_t& at) {
     return value;
 }
 
-// #### is as many digits as marks; a single # is four.
+// #### stands for as many digits as there are marks; a single # for four.
 Token hash_token(std::string_view pattern, size_t start) {
     size_t end = pattern.find_first_not_of('#', start);
     if (end == std::string_view::npos) end = pattern.size();
     return {start, end - start, end - start == 1 ? 4 : end - start};
 }
 
-// @@@@ is as many digits as marks; a single @ is part of a name.
+// @@@@ stands for as many digits as there are marks; a single @ is part of the name.
 std::optional<Token> at_token(std::string_view pattern, size_t start) {
     const size_t end = std::min(pattern.find_first_not_of('@', start), pattern.size());
     if (end - start == 1) return {};
     return Token{start, end - start, end - start};
 }
 
-// <F> or <F4>; anything else in angle brackets is left as it stands.
+// <F> or <F4>; anything else in angle brackets is left as is.
 std::optional<Token> angle_token(std::string_view pattern, size_t start) {
     if (pattern.substr(start, 2) != "<F") return {};
     size_t at = start + 2;
@@ -55,7 +55,7 @@ std::optional<Token> angle_token(std::string_view pattern, size_t start) {
     return Token{start, at + 1 - start, at == first ? 1 : digits};
 }
 
-// %d or %04d; nothing else that printf might understand.
+// %d or %04d; no other printf conversion.
 Token percent_token(std::string_view pattern, size_t start) {
     size_t at = start + 1;
     const bool padded = at < pattern.size() && pattern[at] == '0';
@@ -65,7 +65,7 @@ Token percent_token(std::string_view pattern, size_t start) {
     return {start, at + 1 - start, digits};
 }
 
-// $F or $F4; none for any other variable, which is left as it stands.
+// $F or $F4; any other variable is left as is.
 std::optional<Token> dollar_token(std::string_view pattern, size_t start) {
     if (pattern.substr(start, 2) != "$F") return {};
     size_t at = start + 2;

@@ -13,7 +13,7 @@ namespace tyndall {
 namespace {
 constexpr int64_t max_frames = 1000000;
 
-// Reads a frame range from left to right; every complaint names the column it stands at.
+// Parses a frame range from left to right; every error names its column.
 class Reader {
 public:
     explicit Reader(std::string_view text) : text_(text) {}
@@ -106,9 +106,9 @@ std::string piece_text(const std::vector<int>& frames, size_t start, size_t end)
     return step == 1 ? text : text.append("x").append(std::to_string(step));
 }
 
-// The piece of the list that ends at some frame, in the cheapest spelling of everything up to there.
+// The last piece of the shortest text for all frames up to a given one.
 struct Piece {
-    int64_t cost = 0; // characters, ties broken by fewer pieces
+    int64_t cost = 0; // number of characters, ties broken by fewer pieces
     size_t start = 0;
 };
 
@@ -140,7 +140,8 @@ std::vector<int> spread_frames(const std::vector<int>& frames) {
 }
 
 std::string format_frames(const std::vector<int>& frames) {
-    // Dynamic programming over prefixes: a piece is one frame or an even run, begun where the run begins or one later.
+    // Dynamic programming over prefixes: a piece is one frame or an evenly spaced run, from its first or second frame
+    // on.
     std::vector<Piece> best(frames.size());
     size_t run = 0;
     for (size_t i = 0; i < frames.size(); ++i) {

@@ -5,17 +5,16 @@
 #include <vector>
 
 namespace tyndall {
-// The frames of a range in the order written, without duplicates. Throws Error (usage) naming the column that is wrong.
+// The frames of a range in the order written, without duplicates. Throws Error (usage) naming the offending column.
 std::vector<int> parse_frames(std::string_view text);
 
-// All of them, first and last too.
+// All frames first..last, inclusive.
 std::vector<int> frames_between(int first, int last);
 
-// The first, the last, then again and again the middle of what is left between two: whenever a render stops, what is
-// there is spread over the shot.
+// Orders frames by bisection (first, last, then midpoints), so that a render stopped early covers the whole shot.
 std::vector<int> spread_frames(const std::vector<int>& frames);
 
-// "1-48", "1-9x2,20": the shortest way back.
+// "1-48", "1-9x2,20": the shortest text that parse_frames() turns back into these frames.
 std::string format_frames(const std::vector<int>& frames);
 
 bool has_frame_token(std::string_view pattern);

@@ -15,8 +15,8 @@
 #include <string>
 
 namespace tyndall {
-// Mapped memory and the line to say when it cannot be read. Ranges are never freed, only used again: a signal handler
-// walks the list.
+// A mapped range of memory and the error line to print if reading it fails. Ranges are reused but never freed, because
+// the signal handler walks the list.
 struct WatchedRange {
     std::atomic<const char*> begin = nullptr; // null = free
     std::atomic<size_t> size = 0;
@@ -28,9 +28,9 @@ namespace {
 std::atomic<WatchedRange*> ranges = nullptr;
 struct sigaction previous_action;
 
-// Reading a mapped page that is gone. Any other fault is left to whoever was there before.
+// Handles SIGBUS from a mapped page that is gone. Any other fault goes to the previous handler.
 void on_bus_error(int, siginfo_t* info, void*) {
-    const bool is_fault = info->si_code > 0; // else somebody sent it
+    const bool is_fault = info->si_code > 0; // otherwise sent by kill()
     const char* at = static_cast<const char*>(info->si_addr);
     for (const WatchedRange* range = ranges; is_fault && range; range = range->next) {
         const char* begin = range->begin;

@@ -1,7 +1,7 @@
-// Files as read-only memory, which any number of processes share.
+// Read-only memory-mapped files, shared between any number of processes.
 //
-// A file that is deleted stays readable for those who have mapped it. Where one is cut, or its disk goes away, the
-// process ends with exit code 4 and a line that names the file, as soon as it reads what is gone.
+// A deleted file stays readable while it is mapped. If a file is truncated, or its disk goes away, the process exits
+// with code 4 and a line naming the file as soon as it reads a missing page.
 #pragma once
 #include "base/io/file_hashes.h"
 
@@ -20,10 +20,11 @@ public:
     MappedFile& operator=(const MappedFile&) = delete;
 
     const std::filesystem::path& path() const { return path_; }
-    const FileStamp& stamp() const { return stamp_; } // when it was mapped
+    const FileStamp& stamp() const { return stamp_; } // at the time of mapping
     std::string_view bytes() const { return {static_cast<const char*>(memory_), stamp_.size}; }
 
-    // Throws Error (unreadable) unless the file still has the stamp it was mapped with; its name does not count.
+    // Throws Error (unreadable) if the file's stamp has changed since it was mapped. Renaming or deleting it is
+    // allowed.
     void check_unchanged() const;
 
 private:

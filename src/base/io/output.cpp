@@ -23,7 +23,7 @@ void check_pattern(const std::string& pattern, std::string_view extension, bool 
 }
 
 OutputPlaces::~OutputPlaces() {
-    // Only empty directories can be removed this way; anything else in them is somebody's work.
+    // remove() only succeeds on empty directories; anything else in them is a user's work.
     for (auto made = made_.rbegin(); made != made_.rend(); ++made) {
         std::error_code ignored;
         fs::remove(*made, ignored);

@@ -1,4 +1,4 @@
-// Where a command's files go: names checked, directories tested before any work, nothing left of a run that failed.
+// Output paths of a command: checked before any work starts; a failed run leaves no directories behind.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -6,12 +6,12 @@
 #include <vector>
 
 namespace tyndall {
-// Throws Error (usage) unless the pattern ends in `extension` and has no foreign frame token; `several` frames need
-// one.
+// Throws Error (usage) unless the pattern ends in `extension`, its frame token (if any) is valid, and it has one if
+// there are `several` frames.
 void check_pattern(const std::string& pattern, std::string_view extension, bool several,
                    std::string_view option = "--output");
 
-// Makes sure every file can be written. Directories it makes are removed again when they end empty.
+// Checks that every file can be written. Directories it creates are removed again if they are empty at the end.
 class OutputPlaces {
 public:
     ~OutputPlaces();

@@ -42,7 +42,7 @@ std::string bar_text(const std::string& what, double fraction, double elapsed, d
 }
 }
 
-// Output that cannot be written (a closed pipe) is no reason to stop the work: results of the writes are ignored.
+// Failed writes of progress (a closed pipe) must not stop the work, so their results are ignored.
 
 Progress::Progress(ProgressStyle style, std::string_view what, double total, bool to_stderr)
     : style_(style), what_(printable(what, 60)), total_(total), to_stderr_(to_stderr) {
@@ -65,7 +65,7 @@ Progress::~Progress() {
 
 void Progress::set(double done) {
     const std::lock_guard lock(mutex_);
-    if (finished_ || !(done > done_)) return; // also not a number
+    if (finished_ || !(done > done_)) return; // also rejects NaN
     done_ = std::min(done, total_);
     print(false);
 }
@@ -111,7 +111,7 @@ void Progress::print(bool last) {
     const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : -1;
     const int percent = total_ > 0 ? static_cast<int>(100 * done_ / total_ + 1e-9) : last ? 100 : 0;
 
-    // A bar moves ten times a second at most; lines come with each percent, and each minute to show the job lives.
+    // A bar updates at most ten times a second; lines are printed at every percent, and every minute as a heartbeat.
     const bool bar = style_ == ProgressStyle::bar;
     if (last_percent_ >= 0 && (bar ? since < 0.1 && !last : percent == last_percent_ && since < 60)) return;
     last_percent_ = percent;

@@ -1,6 +1,6 @@
-// Progress of long work on stdout: a bar with time left on a terminal, ALF_PROGRESS lines for farms otherwise. Where
-// only stderr is a terminal, as with "> report.txt", the bar is there. The style openjd is what Open Job Description
-// calls messages of an action: openjd_progress, and openjd_status for human lines.
+// Progress of long work on stdout: a bar with the remaining time on a terminal, otherwise ALF_PROGRESS lines for render
+// farms. If only stderr is a terminal, as with "> report.txt", the bar goes there. The openjd style prints the action
+// messages of Open Job Description: openjd_progress, and openjd_status for human-readable lines.
 #pragma once
 #include <cstddef>
 #include <mutex>
@@ -8,16 +8,16 @@
 #include <string_view>
 
 namespace tyndall {
-enum class ProgressStyle { automatic, alf, openjd, json, bar, none, silent }; // silent: no finished frames either
+enum class ProgressStyle { automatic, alf, openjd, json, bar, none, silent }; // silent: omits line() output too
 
-// Thread-safe. `to_stderr` keeps stdout free for a report that programs read.
+// Thread-safe. `to_stderr` keeps stdout free for machine-readable reports.
 class Progress {
 public:
     Progress(ProgressStyle style, std::string_view what, double total, bool to_stderr = false);
     ~Progress();
     void set(double done);            // absolute, 0..total; a smaller value than before is ignored
-    double share() const;             // done of the total
-    void line(std::string_view text); // a human line (a frame finished) that does not break the bar
+    double share() const;             // done as a fraction of the total
+    void line(std::string_view text); // prints a line (a frame finished) without breaking the bar
     void finish();
 
 private:

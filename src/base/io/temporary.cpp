@@ -41,7 +41,7 @@ std::string host_tag() {
     return name;
 }
 
-// Process ids mean something only within one namespace: containers may share a host name and a directory.
+// Process ids are only unique within one namespace: containers may share a host name and a directory.
 std::string namespace_tag() {
     struct stat info;
     return stat("/proc/self/ns/pid", &info) == 0 ? std::to_string(info.st_ino) : "0";
@@ -54,7 +54,7 @@ std::filesystem::path temporary_name(const std::filesystem::path& path) {
     return path.parent_path() / (stem.str() + tail.str());
 }
 
-// Takes the part after the last dot off `text`; false when there is none.
+// Splits the part after the last dot off `text`; false if there is no dot.
 bool take_field(std::string_view& text, std::string_view& field) {
     const size_t dot = text.rfind('.');
     if (dot == std::string_view::npos) return false;
@@ -73,7 +73,7 @@ struct Owner {
     uint64_t process = 0;
 };
 
-// Reads who wrote a temporary; false for every name this program would not have made on this host.
+// Parses which process wrote a temporary; false for any name this program would not create on this host.
 bool parse_owner(std::string_view name, const std::string& host, Owner& owner) {
     std::string_view suffix, random, process;
     if (!take_field(name, suffix) || !take_field(name, random) || !take_field(name, process)) return false;
@@ -126,7 +126,7 @@ void Temporary::sync_and_close() {
     while (synced != 0 && errno == EINTR);
     if (synced != 0 && errno != EINVAL) fail_with("cannot sync to disk");
 
-    // Closed even on an error, so never twice; an interrupted close has already been synced.
+    // close() releases the descriptor even on error, so never retry it; if interrupted, the data are already synced.
     const int closed = close(descriptor_);
     descriptor_ = -1;
     if (closed != 0 && errno != EINTR) fail_with("cannot close");
@@ -134,7 +134,7 @@ void Temporary::sync_and_close() {
 
 void Temporary::rename_over_final() {
     if (rename(name_.c_str(), final_.c_str()) != 0) {
-        // Network file systems may report failure for a rename that happened.
+        // Network file systems may report failure for a rename that succeeded.
         const int error = errno;
         struct stat info;
         const bool arrived = stat(final_.c_str(), &info) == 0 && info.st_dev == device_ && info.st_ino == inode_;
@@ -143,7 +143,7 @@ void Temporary::rename_over_final() {
     }
     exists_ = false;
 
-    // The new name itself is durable once its directory is. A directory that cannot be opened for reading is let be.
+    // The new name is durable only once its directory is synced. Directories that cannot be opened are skipped.
     const auto parent = final_.parent_path();
     const int directory = open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (directory < 0) return;

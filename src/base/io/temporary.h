@@ -1,11 +1,11 @@
-// Temporaries beside final files: named so that a later run can tell its own leftovers from everything else.
+// Temporary files next to the final ones, named so that a later run can recognize its own leftovers.
 #pragma once
 #include <filesystem>
 #include <string>
 
 namespace tyndall {
-// A file opened for writing under a fresh name `.<name>.<host>.<pid namespace>-<pid>.<random>.tmp` in the directory of
-// `path`. Unlinked on destruction unless it was renamed. Every step throws Error (unwritable) naming `path`.
+// A file opened for writing under a unique name `.<name>.<host>.<pid namespace>-<pid>.<random>.tmp` in the directory of
+// `path`. Deleted on destruction unless it was renamed. Every step throws Error (unwritable) naming `path`.
 class Temporary {
 public:
     explicit Temporary(const std::filesystem::path& path);

@@ -47,7 +47,7 @@ namespace {
 void append_number(std::string& text, double number) {
     char digits[32];
     assert(std::isfinite(number));
-    // Whole numbers without an exponent: readers that expect an integer refuse 1e+05.
+    // Whole numbers have no exponent: readers that expect an integer reject 1e+05.
     const bool whole = number == std::floor(number) && std::abs(number) < 1e15;
     char* const end = digits + sizeof digits;
     text.append(digits, whole ? std::to_chars(digits, end, number, std::chars_format::fixed).ptr

@@ -1,4 +1,4 @@
-// nlohmann's event parser builds our tree: nothing is ever stored that breaks a limit.
+// Builds the Json tree from nlohmann's SAX parser, so limits are enforced before anything is stored.
 #include "base/error.h"
 #include "base/json/json.h"
 #include "base/json/json_pointer.h"
@@ -24,7 +24,7 @@ std::string position_text(std::string_view text, size_t position) {
     return "line " + std::to_string(line) + ", column " + std::to_string(column) + ": ";
 }
 
-// What the library says, without its own name and position.
+// The library's message without its own prefix and position.
 std::string_view plain_message(std::string_view message) {
     const size_t tag = message.find("] ");
     if (message.starts_with("[json.exception") && tag != message.npos) message.remove_prefix(tag + 2);
@@ -81,7 +81,7 @@ private:
         return true;
     }
 
-    // The new value's place stays put while it is open: its parent only grows after it is complete.
+    // The returned reference stays valid while the value is open: its parent grows only after it is complete.
     Json& add(Json::Kind kind) {
         if (++count_ > max_values) refuse(file_, "more than " + std::to_string(max_values) + " values");
         Json* place = &root;

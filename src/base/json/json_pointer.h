@@ -1,10 +1,10 @@
-// JSON pointers (RFC 6901): how errors name a place in a document.
+// JSON pointers (RFC 6901): how errors name a location in a document.
 #pragma once
 #include <string>
 #include <string_view>
 
 namespace tyndall {
-// "/lights" and "a/b" make "/lights/a~1b".
+// "/lights" and "a/b" give "/lights/a~1b".
 inline std::string json_pointer(std::string_view parent, std::string_view key) {
     std::string pointer(parent);
     pointer += '/';
@@ -23,7 +23,7 @@ inline std::string json_pointer(std::string_view parent, size_t index) {
     return std::string(parent) + "/" + std::to_string(index);
 }
 
-// The key that a part of a pointer stands for: "a~1b" is "a/b".
+// The unescaped key of one pointer segment: "a~1b" gives "a/b".
 inline std::string json_pointer_key(std::string_view part) {
     std::string key;
     for (size_t i = 0; i < part.size(); ++i) {
@@ -34,7 +34,7 @@ inline std::string json_pointer_key(std::string_view part) {
     return key;
 }
 
-// "scenes/a.json: /lights/0"; the file alone for the root.
+// "scenes/a.json: /lights/0"; only the file for the root.
 inline std::string json_place(std::string_view file, std::string_view pointer) {
     return std::string(file) + (pointer.empty() ? "" : ": ") + std::string(pointer);
 }

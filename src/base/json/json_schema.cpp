@@ -1,4 +1,4 @@
-// Documents against their JSON schema, told in one sentence.
+// Checks documents against a JSON schema and reports the first problem in one sentence.
 #include "base/error.h"
 #include "base/json/json.h"
 #include "base/json/json_pointer.h"
@@ -6,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-// The recursive matcher of std::regex needs stack for every character.
+// std::regex recurses for every character, so long strings could overflow the stack.
 constexpr size_t longest_string = 10000;
 
 void check_string(const std::string& text, const std::string& pointer, std::string_view file) {

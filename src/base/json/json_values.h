@@ -1,4 +1,4 @@
-// Reports put together from values that Json takes: numbers, texts, vectors, lists.
+// Helpers that build JSON reports.
 #pragma once
 #include "base/json/json.h"
 
@@ -11,13 +11,13 @@ inline Json json_object(JsonMembers members) {
     return result;
 }
 
-// An array of what `make` makes of each value.
+// An array of make(value) for each value.
 template<class Range, class Make> Json json_list(const Range& values, const Make& make) {
     std::vector<Json> items;
     for (const auto& value : values) items.push_back(make(value));
     return items;
 }
 
-// An object as a report of one line.
+// An object as a one-line report.
 inline std::string json_line(JsonMembers members) { return format_json(json_object(std::move(members))) + "\n"; }
 }

@@ -41,7 +41,7 @@ std::vector<std::string> strings_of(const Json* array) {
 }
 
 namespace {
-// The schemas that a member of an object has to meet: by its name, by patterns of names, or as an additional one.
+// The schemas that apply to a member of an object: by name, by name pattern, or else additionalProperties.
 std::vector<const Json*> member_schemas(const std::string& key, const Json& schema) {
     std::vector<const Json*> schemas;
     const Json *properties = schema.find("properties"), *patterns = schema.find("patternProperties");

@@ -14,7 +14,7 @@ std::string lowered(std::string_view text) {
     return result;
 }
 
-// A slip of the keyboard keeps at least two thirds of the letters.
+// A typo is assumed to keep at least two thirds of the letters.
 bool looks_like(std::string_view a, std::string_view b) {
     std::string rest = lowered(b);
     const size_t longest = std::max(a.size(), b.size());
@@ -30,14 +30,14 @@ bool looks_like(std::string_view a, std::string_view b) {
 }
 
 namespace {
-// Letters and digits only, so that outerConeAngle and outer_cone_angle are one word.
+// Letters and digits only, so that outerConeAngle and outer_cone_angle compare equal.
 std::string bare(std::string_view text) {
     std::string word = lowered(text);
     std::erase_if(word, [](unsigned char c) { return !std::isalnum(c); });
     return word;
 }
 
-// Those names for which other programs have this word.
+// The names that list `word` as a synonym from other programs.
 std::vector<std::string> meant_by(std::string_view word, const std::vector<std::string>& names, const Json& root) {
     const Json* synonyms = root.find("synonyms");
     std::vector<std::string> meant;
@@ -78,7 +78,7 @@ struct Branch {
     Problem problem;
 };
 
-// Types a schema allows, also through its own unions; empty when any will do.
+// Types that a schema allows, including through nested unions; empty if any type is allowed.
 std::vector<std::string> types_of(const Json& schema, const Json& root) {
     std::vector<std::string> types = allowed_types(schema);
     if (!types.empty()) return types;
@@ -98,7 +98,7 @@ bool fits_types(const Json& value, const std::vector<std::string>& types) {
            std::any_of(types.begin(), types.end(), [&](const auto& type) { return has_type(value, type); });
 }
 
-// What a branch allows for one member; empty when it leaves the member free.
+// The values that a branch allows for one member; empty if the member is unrestricted.
 std::vector<const Json*> allowed_for(const Branch& branch, const std::string& key, const Json& root) {
     const Json* properties = branch.schema->find("properties");
     const Json* member = properties ? properties->find(key) : nullptr;
@@ -109,7 +109,7 @@ bool contains(const std::vector<const Json*>& allowed, const Json& value) {
     return std::any_of(allowed.begin(), allowed.end(), [&](const Json* one) { return equal(*one, value); });
 }
 
-// Whether all alternatives ask for the member, so that it tells them apart even by its absence.
+// True if all branches require the member, so that its absence is itself a problem.
 bool all_require(const std::vector<Branch>& branches, const std::string& key) {
     return std::all_of(branches.begin(), branches.end(), [&](const Branch& branch) {
         const std::vector<std::string> required = strings_of(branch.schema->find("required"));
@@ -117,7 +117,7 @@ bool all_require(const std::vector<Branch>& branches, const std::string& key) {
     });
 }
 
-// Keeps the branches whose distinguishing member ("type": "spot") the value has; complains when it fits none of them.
+// Keeps the branches whose discriminator ("type": "spot") matches the value; returns a problem if none does.
 Problem narrow_by_member(const Json& value, std::vector<Branch>& branches, const Json& root,
                          const std::string& pointer) {
     for (const std::string& key : keys_of(branches.front().schema->find("properties"))) {
@@ -145,7 +145,7 @@ Problem narrow_by_member(const Json& value, std::vector<Branch>& branches, const
     return {};
 }
 
-// How much of an object a branch understands: known keys count for it, unknown ones against it.
+// How well an object matches a branch: plus one for every known key, minus one for every unknown key.
 int likeness(const Json& value, const Branch& branch) {
     const Json* properties = branch.schema->find("properties");
     int score = 0;
@@ -155,7 +155,7 @@ int likeness(const Json& value, const Branch& branch) {
 
 bool only_requires(const Json& schema) { return schema.members.size() == 1 && schema.has("required"); }
 
-// "needs one of "color", "sky"", where each alternative only asks for keys.
+// "needs one of "color", "sky"" if every alternative only requires keys; else empty.
 std::string required_choice(const std::vector<Branch>& branches, const char* text) {
     std::vector<std::string> keys;
     for (const Branch& branch : branches) {
@@ -166,7 +166,7 @@ std::string required_choice(const std::vector<Branch>& branches, const char* tex
     return text + quoted_list(keys);
 }
 
-// Of several alternatives that all fail, the complaint of the one most likely meant.
+// Of several alternatives that all fail, the problem of the one most likely meant.
 Problem likeliest_problem(const Json& value, std::vector<Branch> branches, const Json& root,
                           const std::string& pointer) {
     std::vector<std::string> types;

@@ -1,27 +1,27 @@
-// The walk over a schema, shared by the rules for members and items and the rules for alternatives.
+// The recursive schema check, shared by the rules for members and items and the rules for unions.
 #pragma once
 #include "base/json/schema_problem.h"
 
 namespace tyndall {
 using Problem = std::optional<SchemaProblem>;
 
-// The first problem of a value under a part of the schema `root`.
+// The first problem of a value checked against `schema`, a subschema of `root`.
 Problem find_problem(const Json& value, const Json& schema, const Json& root, const std::string& pointer);
 
-// The part of it that comes from anyOf and oneOf.
+// The first problem from anyOf and oneOf alone.
 Problem union_problem(const Json& value, const Json& schema, const Json& root, const std::string& pointer);
 
-// The schema that a chain of local references (#, #/definitions/x) ends at.
+// The schema at the end of a chain of local references (#, #/definitions/x).
 const Json& resolved(const Json& schema, const Json& root);
 
-// Keys of an object, strings of an array; empty when it is null.
+// Keys of an object, strings of an array; empty if the pointer is null.
 std::vector<std::string> keys_of(const Json* object);
 std::vector<std::string> strings_of(const Json* array);
 
-// 'unknown key; did you mean "fov"?', by the words of other programs that the schema `root` lists as "synonyms" and by
-// the spelling, or what is known when nothing is near.
+// 'unknown key; did you mean "fov"?', matched by the terms of other programs that the schema `root` lists as "synonyms"
+// and by spelling; lists the known keys if nothing is close.
 std::string unknown_key(const std::string& key, const std::vector<std::string>& known, const Json& root);
 
-// '; did you mean "sun"?' of a value that is none of those allowed, by the same synonyms; else empty.
+// '; did you mean "sun"?' for a disallowed value that is a synonym of an allowed one; else empty.
 std::string meant_value(const Json& value, const std::vector<const Json*>& allowed, const Json& root);
 }

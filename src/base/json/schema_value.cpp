@@ -27,7 +27,7 @@ std::string short_text(const Json& value) {
 }
 
 std::string list_text(const std::vector<std::string>& texts) {
-    constexpr size_t longest = 140, most = 360; // of one, of all: an error is one line
+    constexpr size_t longest = 140, most = 360; // bytes per item, bytes in total: an error is one line
     std::string list;
     for (const std::string& text : texts) {
         if (!list.empty() && list.size() + text.size() > most) return list + ", ...";
@@ -58,7 +58,7 @@ std::string number_problem(double number, const Json& schema) {
     return {};
 }
 
-// How many characters, items or keys there are, against the least and the most allowed.
+// Checks a number of characters, items or keys against its allowed minimum and maximum.
 std::string size_problem(size_t size, double least, double most, const std::string& what) {
     const double have = static_cast<double>(size);
     if (have >= least && have <= most) return {};
@@ -139,7 +139,7 @@ std::vector<std::string> allowed_types(const Json& schema) {
 }
 
 bool has_type(const Json& value, const std::string& type) {
-    constexpr double exact = 0x1p53; // beyond, neighbouring integers become one number
+    constexpr double exact = 0x1p53; // doubles beyond this skip integers
     if (type == "integer")
         return value.kind == Json::Kind::number && is_whole(value.number) && std::fabs(value.number) <= exact;
     return type == type_name(value);

@@ -1,4 +1,4 @@
-// Tangents and their angles for kernels (see base/simd/simd.h for how such files are compiled).
+// Tangent and arctangent for kernels (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_BASE_SIMD_ANGLES_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_BASE_SIMD_ANGLES_SIMD_H
 #undef TYNDALL_BASE_SIMD_ANGLES_SIMD_H
@@ -10,7 +10,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// Within 2e-7 of the angle: Abramowitz & Stegun 4.4.49 up to 1, the complement beyond.
+// Absolute error under 2e-7: Abramowitz & Stegun 4.4.49 up to 1, the complementary angle beyond.
 HWY_INLINE Floats atan(const Floats& value) {
     const Floats size = abs(value);
     const Mask16 steep = size > 1.0f;
@@ -23,7 +23,8 @@ HWY_INLINE Floats atan(const Floats& value) {
     return select(value < 0.0f, -angle, angle);
 }
 
-// For angles in -π/2..π/2, relative error under 3e-7 up to π/4 (Abramowitz & Stegun 4.3.101), the complement beyond.
+// For angles in -π/2..π/2: relative error under 3e-7 up to π/4 (Abramowitz & Stegun 4.3.101), the complementary angle
+// beyond.
 HWY_INLINE Floats tan(const Floats& angle) {
     const Floats size = abs(angle);
     const Mask16 steep = size > 0.25f * pi;
@@ -36,7 +37,7 @@ HWY_INLINE Floats tan(const Floats& angle) {
     return select(angle < 0.0f, -value, value);
 }
 
-// atan(b) - atan(a) for b >= a, without cancellation where both are steep.
+// atan(b) - atan(a) for b >= a, without cancellation when both are large.
 HWY_INLINE Floats angle_between(const Floats& a, const Floats& b) {
     const Floats below = fused(a, b, 1.0f), above = b - a;
     const Mask16 wide = below <= 0.0f; // a right angle or more

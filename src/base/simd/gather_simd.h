@@ -1,4 +1,4 @@
-// Neighbouring floats gathered together (see base/simd/simd.h for how such files are compiled).
+// Gathers of adjacent floats (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_BASE_SIMD_GATHER_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_BASE_SIMD_GATHER_SIMD_H
 #undef TYNDALL_BASE_SIMD_GATHER_SIMD_H

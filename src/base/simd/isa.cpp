@@ -12,7 +12,7 @@ std::string_view isa_name() { return hwy::SupportedTargets() & HWY_AVX3 ? "avx51
 
 std::string_view set_isa(std::string_view name) {
     choice_among("--isa", name, {"auto", "avx2", "avx512"});
-    // Zero lifts an earlier choice, so that the question below is about the machine.
+    // Zero clears any earlier choice, so that SupportedTargets() reports what the machine supports.
     hwy::SetSupportedTargetsForTest(0);
     if (name != "auto") {
         const int64_t target = name == "avx2" ? HWY_AVX2 : HWY_AVX3;

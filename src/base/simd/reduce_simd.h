@@ -1,4 +1,4 @@
-// Sixteen floats made one (see base/simd/simd.h for how such files are compiled).
+// Horizontal reductions of sixteen floats (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_BASE_SIMD_REDUCE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_BASE_SIMD_REDUCE_SIMD_H
 #undef TYNDALL_BASE_SIMD_REDUCE_SIMD_H

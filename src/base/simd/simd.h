@@ -7,7 +7,7 @@
 //     #include "base/simd/simd.h"
 // puts its kernels in HWY_BEFORE_NAMESPACE(); namespace tyndall::HWY_NAMESPACE { ... } HWY_AFTER_NAMESPACE();
 // and ends with #if HWY_ONCE, HWY_EXPORT(kernel) and HWY_DYNAMIC_DISPATCH(kernel)(...).
-// Multiply-adds fuse only where fused() says so, so AVX2 and AVX-512 give the same bits.
+// Multiply-adds are fused only through fused(), so AVX2 and AVX-512 give bit-identical results.
 #if defined(TYNDALL_BASE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_BASE_SIMD_H
 #undef TYNDALL_BASE_SIMD_H
@@ -95,7 +95,7 @@ TYNDALL_SIMD_BINARY(Ints, Ints, max, hn::Max(a.part[i], b.part[i]))
 #undef TYNDALL_SIMD_UNARY
 #undef TYNDALL_SIMD_BINARY
 
-// a·b + c in one rounding (where the instruction set has it).
+// a·b + c with a single rounding (if the instruction set has it).
 HWY_INLINE Floats fused(const Floats& a, const Floats& b, const Floats& c) {
     Floats r;
     for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::MulAdd(a.part[i], b.part[i], c.part[i]);
@@ -140,7 +140,7 @@ HWY_INLINE Floats to_floats(const Ints& a) {
     for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::ConvertTo(FloatTag(), a.part[i]);
     return r;
 }
-HWY_INLINE Ints truncate(const Floats& a) { // towards zero
+HWY_INLINE Ints truncate(const Floats& a) { // toward zero
     Ints r;
     for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::ConvertTo(IntTag(), a.part[i]);
     return r;
@@ -156,7 +156,7 @@ HWY_INLINE Ints gather(const int32_t* base, const Ints& index) {
     return r;
 }
 
-// The 4 bytes at each offset, lane by lane where gather instructions are no faster than that.
+// The 4 bytes at each offset; loaded lane by lane on targets where gather instructions are no faster.
 HWY_INLINE hn::Vec<IntTag> words_at(const char* base, const hn::Vec<IntTag>& offset) {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
     alignas(64) int32_t at[lane_step];
@@ -180,7 +180,7 @@ HWY_INLINE hn::Vec<IntTag> words_at(const char* base, const hn::Vec<IntTag>& off
 #endif
 }
 
-// Part i of two half floats per lane, the first in the lower 16 bits.
+// Converts part i from two half floats per lane, the first in the lower 16 bits.
 HWY_INLINE void split_half_pairs(hn::Vec<hn::ScalableTag<uint32_t>> pair, size_t i, Floats& first, Floats& second) {
     using ShortTag = hn::Rebind<uint16_t, hn::ScalableTag<uint32_t>>;
     using HalfTag = hn::Rebind<hwy::float16_t, FloatTag>;
@@ -194,7 +194,7 @@ HWY_INLINE void load_half_pairs(const uint32_t* from, Floats& first, Floats& sec
         split_half_pairs(hn::LoadU(hn::ScalableTag<uint32_t>(), from + i * lane_step), i, first, second);
 }
 
-// Two neighbouring half floats per lane: base[index] and base[index + 1]. Reads 4 bytes at each index.
+// Gathers two adjacent half floats per lane: base[index] and base[index + 1]. Reads 4 bytes at each index.
 HWY_INLINE void gather_half_pairs(const uint16_t* base, const Ints& index, Floats& first, Floats& second) {
     for (size_t i = 0; i < vectors_per_packet; ++i) {
         const auto offset = hn::ShiftLeft<1>(index.part[i]);

@@ -1,5 +1,5 @@
-// Light of the environment that fog scatters once towards the eye. Distances are picked in proportion to what would be
-// seen from there; directions both by the light and by the phase function, which share it (balance heuristic).
+// Single scattering of environment light. Distances are sampled in proportion to extinction times transmittance to the
+// eye; directions by multiple importance sampling (balance heuristic) of the environment and the phase function.
 #include "integrate/lights/path_lights.h"
 
 #include "trace/lights/environment.h"
@@ -10,7 +10,7 @@ namespace tyndall {
 namespace {
 enum Use : uint32_t { use_place = 0x5f1e, use_light, use_phase };
 
-// Both directions from one point; `weight`: of what is scattered there.
+// Appends one path by each strategy from one point; `weight` scales the scattered light.
 void append_paths(const Environment& environment, const ScatteringFog& fog, const FogThere& there, size_t ray,
                   float weight, float which, vec2 u, vec2 v, std::vector<ScatterPath>& paths) {
     const auto append = [&](vec3 direction, vec3 radiance, float by_light) {

@@ -1,6 +1,6 @@
-// Light of rectangles, discs and balls that fog scatters once towards the eye. Distances are picked both evenly in the
-// angle around the light and in proportion to what would be seen from there, and from there directions both by the
-// solid angle of the face and by the phase function. They share it (balance heuristic).
+// Single scattering of light from rectangles, discs and spheres. Distances are sampled both equi-angularly and in
+// proportion to extinction times transmittance to the eye; directions both by solid angle of the light and by the phase
+// function. Combined by multiple importance sampling (balance heuristic).
 #include "integrate/lights/path_lights.h"
 
 #include "scene/area_shape.h"
@@ -14,16 +14,16 @@ namespace tyndall {
 namespace {
 enum Use : uint32_t { use_distance = 0x7fac, use_point, use_phase, use_medium };
 
-constexpr int pairs_for_a_point = 2; // of distances, one by angle and one by fog
+constexpr int pairs_for_a_point = 2; // of distances: one equi-angular, one by the fog
 
-// The two ways to pick distances on a ray, for one light.
+// The two distance sampling strategies on a ray for one light.
 struct Distances {
     const SeenFog& fog;
     AngleDistances angles;
 };
 
-// Whether the fog at a point scatters more narrowly than the face is wide from there: only then is it worth looking for
-// it by the phase function.
+// True if the phase function's lobe at a point is narrower than the solid angle of the light: only then is phase
+// function sampling worthwhile.
 bool is_wide(const ScatteringFog& fog, const FogThere& there, const Light& light) {
     const vec3 offset = there.point - light.position;
     float peak = 0;
@@ -31,13 +31,13 @@ bool is_wide(const ScatteringFog& fog, const FogThere& there, const Light& light
     return peak * face_area(*light.area) > glm::dot(offset, offset);
 }
 
-// The numbers that pick directions.
+// Random numbers for sampling directions.
 struct DirectionNumbers {
     vec2 face, phase;
     float medium = 0;
 };
 
-// Two ways to the light from a distance of the ray, one of `count`.
+// Appends up to two paths to the light from the point at distance t, one of `count` distances.
 void append_paths(const ScatteringFog& fog, const Light& light, const Ray& ray, const Distances& distances, double t,
                   size_t piece, double count, const DirectionNumbers& u, size_t number,
                   std::vector<ScatterPath>& paths) {
@@ -71,7 +71,7 @@ void append_ray(const ScatteringFog& fog, const Light& light, size_t number, con
                 const SeenFog& seen, std::vector<ScatterPath>& paths) {
     const Ray& ray = batch.rays[i];
     const FogPieces& pieces = seen.pieces;
-    // Only what the light reaches is worth asking for.
+    // Restrict sampling to the range of the light.
     const Interval<double> reach = light_reach(light, dvec3(ray.origin), dvec3(ray.direction));
     const Distances distances{seen,
                               angle_distances(ray, pieces, dvec3(light.position), double{capped_radius(light)}, reach)};

@@ -11,13 +11,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Light and extinction at a node.
+// Emission and extinction at a node.
 struct LightAtNode {
     vec3 emission{0};
     float extinction = 0;
 };
 
-// Sixteen nodes of one ray at once.
+// Evaluates up to sixteen nodes of one ray.
 void look_at(const FieldLight& light, const Medium& field, const Ray& ray, std::span<const EmissionNode> nodes,
              LightAtNode* result) {
     alignas(64) float t[16], v[4][16];
@@ -31,18 +31,18 @@ void look_at(const FieldLight& light, const Medium& field, const Ray& ray, std::
     for (size_t i = 0; i < nodes.size(); ++i) result[i] = {vec3(v[0][i], v[1][i], v[2][i]), v[3][i]};
 }
 
-// Nodes of one field on one ray, ascending.
+// Integrates the emission of one field over the nodes of one ray, which are ascending.
 vec3 light_of_nodes(const FieldLight& light, const Medium& field, const Ray& ray, std::span<const EmissionNode> nodes) {
     vec3 sum(0);
     double depth = 0;
-    float from = 0, extinction = 0, reach = -infinity; // of the node before; none
+    float from = 0, extinction = 0, reach = -infinity; // of the previous node; none yet
     for (size_t first = 0; first < nodes.size(); first += 16) {
         const std::span<const EmissionNode> some = nodes.subspan(first, std::min<size_t>(16, nodes.size() - first));
         LightAtNode at[16];
         look_at(light, field, ray, some, at);
         for (size_t i = 0; i < some.size(); ++i) {
             const float way = some[i].t - from;
-            // Between neighbours fog changes evenly; over gaps it is integrated.
+            // Use the trapezoidal rule between adjacent nodes, and integrate the fog across gaps.
             if (way <= reach + some[i].length)
                 depth += 0.5 * (extinction + at[i].extinction) * way;
             else

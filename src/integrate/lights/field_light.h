@@ -1,5 +1,5 @@
-// Light that fields of grids give off along camera rays, dimmed by the fog before it: at nodes bound to the voxels, so
-// that no step or cell of a technique limits it.
+// Direct emission of grid fields along camera rays, attenuated by the fog in front. Nodes follow the voxels, so the
+// resolution does not depend on the step size or cells of a technique.
 #pragma once
 #include "integrate/ray_batch.h"
 #include "integrate/style.h"
@@ -11,19 +11,19 @@ namespace tyndall {
 struct Snapshot;
 
 struct FieldLight {
-    std::vector<Medium> fields; // media that only emit
-    std::vector<Medium> fog;    // what dims them
+    std::vector<Medium> fields; // emission-only media
+    std::vector<Medium> fog;    // media that attenuate them
     StyleSettings style;
     Camera camera;
-    float opaque = 16; // optical depth behind which nothing is asked for
+    float opaque = 16; // optical depth beyond which nodes are skipped
 };
 
-// Takes the media that only emit out of a snapshot.
+// Moves the emission-only media out of a snapshot.
 FieldLight take_fields(Snapshot& snapshot, const StyleSettings& style, const Camera& camera);
 
-// Adds the light of the fields along up to 16 rays to their radiance, and to the emission among their parts.
+// Adds the emission of the fields along up to 16 rays to their radiance, and to their emission part.
 void add_field_light(const FieldLight& light, const RayBatch& batch, std::span<Scatter> results);
 
-// A technique that adds it to what `scatter` finds; `scatter` itself where there are no fields.
+// Wraps `scatter` to add field emission; returns `scatter` unchanged if there are no fields.
 ScatterFunction with_field_light(FieldLight light, ScatterFunction scatter);
 }

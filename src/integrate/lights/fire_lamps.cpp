@@ -10,17 +10,17 @@ namespace tyndall {
 namespace {
 constexpr size_t max_lamps = 4;
 constexpr uint32_t places_asked = 1 << 14;
-constexpr float ball_by_spread = 5.0f / 3; // square of a ball's radius by the mean square of the distance to its middle
+constexpr float ball_by_spread = 5.0f / 3; // for a ball: radius² / mean squared distance to its center
 
 struct FirePlace {
     dvec3 position{0}, candela{0};
-    double weight = 0; // luminance
+    double weight = 0; // luminance of `candela`
 };
 
-// Of one part of the fire.
+// One part of the fire.
 struct FirePart {
     std::vector<FirePlace> places;
-    dvec3 middle{0}, candela{0}, spread{0}; // spread: mean squares of the distances to the middle
+    dvec3 middle{0}, candela{0}, spread{0}; // spread: mean squared distance to `middle` per axis
     double weight = 0;
 };
 
@@ -37,7 +37,7 @@ FirePart part_of(std::vector<FirePlace> places) {
     return part;
 }
 
-// Across its longest side, in the middle; the second half is empty where it has no size.
+// Splits a part at its center along its longest axis; the second half is empty if the part has no extent.
 std::pair<FirePart, FirePart> halves(FirePart part) {
     int axis = part.spread.x >= part.spread.y ? 0 : 1;
     if (part.spread.z > part.spread[axis]) axis = 2;
@@ -61,7 +61,7 @@ std::vector<FirePlace> places_of(const EmissiveBricks& fire) {
     return places;
 }
 
-// The part whose size makes the most of its light come from elsewhere.
+// Error measure of replacing a part by one lamp: weight times spread.
 double wrongness(const FirePart& part) { return part.weight * (part.spread.x + part.spread.y + part.spread.z); }
 }
 
@@ -91,7 +91,7 @@ std::vector<Light> fire_lamps(const Snapshot& snapshot) {
     return lamps;
 }
 
-// The mean of 1/r² over a ball of radius R at distance d is 1/d² · (1 + R²/(5 d²) + ...): its variance along an axis is
+// The mean of 1/r² over a ball of radius R at distance d is 1/d² · (1 + R²/(5 d²) + ...): the variance along an axis is
 // R²/5, and ∇²(1/r²) = 2/r⁴.
 double far_enough(const Light& lamp, double share) { return double{lamp.radius} / std::sqrt(5 * share); }
 

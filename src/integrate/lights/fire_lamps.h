@@ -1,4 +1,4 @@
-// Lamps that stand for glowing fog where techniques know of nothing else.
+// Lamps that approximate emissive fog for techniques that support only lamps.
 #pragma once
 #include "integrate/ray_batch.h"
 #include "scene/light.h"
@@ -7,17 +7,18 @@
 #include <vector>
 
 namespace tyndall {
-// Of the media of a snapshot that only emit: at most four, each in the middle of the power of its part of the fire, as
-// bright as it and as large. They shine on fog alone.
+// At most four lamps for the emission-only media of a snapshot, each at the power-weighted center of one part of the
+// fire, with its intensity and size. They illuminate only fog.
 std::vector<Light> fire_lamps(const Snapshot& snapshot);
 
-// How far from such a lamp its light is off by no more than a share, metres: of a ball of its size, by the mean of
-// 1/r².
+// Distance from such a lamp, meters, beyond which its relative error is at most `share`, estimated from the mean of
+// 1/r² over a ball of its size.
 double far_enough(const Light& lamp, double share);
 
-// The snapshot with lamps for its fire behind its own lights.
+// The snapshot with lamps for its fire appended to its lights.
 Snapshot with_fire_lamps(Snapshot snapshot);
 
-// What `scatter` finds in that snapshot, its lamps' parts as the emission's. `lights`: those of the scene.
+// Wraps `scatter` for such a snapshot so that the lamps' parts count as emission. `lights`: number of lights in the
+// scene.
 ScatterFunction with_lamps_as_emission(size_t lights, size_t lamps, ScatterFunction scatter);
 }

@@ -1,7 +1,7 @@
-// Light of fog that glows by grids, scattered once towards the eye by other fog. Three ways to pick a point of a ray
-// and a place in the fire share it (balance heuristic): places by power with distances even in the angle around them;
-// places by power with distances in proportion to what would be seen from there; and from those distances, directions
-// by the phase function and places by brightness on them, which is what counts within the fire.
+// Single scattering of light from emission grids. Three strategies sample a point on the ray and a point in the fire,
+// combined by multiple importance sampling (balance heuristic): fire points by power with equi-angular distances; fire
+// points by power with distances in proportion to extinction times transmittance to the eye; and, from those distances,
+// directions by the phase function and fire points by emission along them, which matters inside the fire.
 #include "integrate/lights/path_lights.h"
 
 #include "trace/lights/emissive_bricks.h"
@@ -12,9 +12,9 @@ namespace tyndall {
 namespace {
 enum Use : uint32_t { use_distance = 0x3f12, use_brick, use_in_brick, use_phase, use_on_line };
 
-constexpr double closest_share = 1e-5; // closest distance that angles are measured from, of the ray's length in fog
+constexpr double closest_share = 1e-5; // minimum equi-angular height, relative to the ray's length in fog
 
-// One ray through the fog.
+// A ray through the fog, with what sampling on it needs.
 struct FireRay {
     const EmissiveBricks& fire;
     const ScatteringFog& fog;
@@ -28,7 +28,7 @@ struct FireRay {
     AngleDistances around(vec3 place) const { return angle_distances(ray, seen.pieces, dvec3(place), min_height); }
 };
 
-// A point of the ray.
+// A scattering point on the ray.
 struct FirePoint {
     double distance = 0, extinction = 0, passing = 0;
     FogThere there;
@@ -41,8 +41,8 @@ bool look(const FireRay& on, double distance, size_t piece, FirePoint& point) {
     return point.extinction > 0 && point.passing > 0;
 }
 
-// What comes from a place to the eye by a point, over the chance that any of the three ways leads there. Both lack the
-// square of the distance between them, which may be 0.
+// Appends the path from a fire point via a scattering point to the eye, weighted by one over the total PDF of the three
+// strategies. The squared distance between the points cancels and is left out, because it may be 0.
 void append_path(const FireRay& on, const FirePoint& point, const EmissivePlace& place, const AngleDistances& angles,
                  double share) {
     const FogThere& there = point.there;
@@ -62,7 +62,8 @@ void append_path(const FireRay& on, const FirePoint& point, const EmissivePlace&
     if (max_component(path.light) > 0) on.paths.push_back(path);
 }
 
-// From a point in a direction by the phase function. Its places have another chance than the guess that all ways share.
+// Samples a direction by the phase function. The actual PDF of the sampled fire point differs from the approximate
+// line_density in the balance heuristic; the ratio goes into the share.
 void append_lines(const FireRay& on, const FirePoint& point, float which, vec2 u, float v) {
     const vec3 direction = direction_by_phase(on.fog.media, point.there, which, u);
     for (size_t field = 0; field < on.fire.fields.size(); ++field) {
@@ -79,7 +80,7 @@ EmissivePlace pick_place(const FireRay& on, const RayBatch& batch, uint32_t k, u
     return pick_emissive_place(on.fire, first.x, {first.y, second.x, second.y});
 }
 
-// One path each way.
+// Appends one path by each strategy.
 void append_round(const FireRay& on, const RayBatch& batch, uint32_t k) {
     static thread_local FirePoint point;
     const auto rounds = static_cast<uint32_t>(on.rounds);
@@ -105,7 +106,7 @@ void append_ray(const EmissiveBricks& fire, const ScatteringFog& fog, const RayB
     const std::vector<FogPieces::Piece>& pieces = seen.pieces.pieces;
     const double min_height = closest_share * (pieces.back().high - pieces.front().low);
     const FireRay on{fire, fog, batch.rays[i], i, seen, double(fog.points), min_height, paths};
-    for (int k = 0; k < fog.points; ++k) append_round(on, batch, static_cast<uint32_t>(k)); // of one path each way
+    for (int k = 0; k < fog.points; ++k) append_round(on, batch, static_cast<uint32_t>(k)); // one path by each strategy
 }
 }
 

@@ -14,8 +14,7 @@ vec2 point_numbers(const RayBatch& batch, size_t ray, uint32_t k, uint32_t count
 }
 
 namespace {
-// Where the optical depth from the ray's start reaches a value below the whole, and the piece that is in: Newton's
-// steps, kept in a bracket.
+// Finds the distance and piece where the optical depth along the ray reaches `depth`: Newton's method with bracketing.
 double distance_at(const FogPieces& fog, double depth, size_t& piece) {
     const auto after = std::upper_bound(fog.pieces.begin() + 1, fog.pieces.end(), depth,
                                         [](double d, const FogPieces::Piece& p) { return d < p.depth; });

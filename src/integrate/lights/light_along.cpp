@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-constexpr uint32_t use_light_point = 0x51ce5u; // tells these random numbers from others of the same sample
+constexpr uint32_t use_light_point = 0x51ce5u; // decorrelates these random numbers from others of the same sample
 }
 
 LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, size_t light_index, uint32_t k,
@@ -36,7 +36,7 @@ void set_cone(const Light& light, LightAlong& along) {
     along.cone_scale = 1 / std::max(inner - outer, 1e-6), along.cone_offset = -outer * along.cone_scale;
 }
 
-// Notes where the strength of a local light has kinks.
+// Collects the distances at which the intensity of a local light has kinks.
 void note_kinks(const Light& light, LightAlong& along) {
     const auto note = [&](Interval<double> stretch) {
         if (!stretch.empty()) along.kinks.push_back(stretch.low), along.kinks.push_back(stretch.high);
@@ -45,14 +45,14 @@ void note_kinks(const Light& light, LightAlong& along) {
     note(chord(along.nearest, along.distance, radius_of(light), glm::length(along.direction)));
     if (has_cone(light)) {
         set_cone(light, along);
-        const double full = (1 - along.cone_offset) / along.cone_scale; // cosine within which the beam is even
+        const double full = (1 - along.cone_offset) / along.cone_scale; // cosine of the uniform inner cone
         note(inside_cone(light.position, glm::normalize(dvec3(light.direction)), std::acos(std::min(full, 1.0)),
                          along.origin, along.direction));
     }
 }
 
-// The part of the ray whose way to the light may cross the ball around a box: of a sun the cylinder behind that ball,
-// of a local light the cone around it.
+// The part of the ray whose path to the light may cross the bounding sphere of a box: inside a cylinder for distant
+// lights, a cone for local lights.
 Interval<double> behind(const Box& box, const LightAlong& along) {
     constexpr double endless = std::numeric_limits<double>::infinity();
     const dvec3 center = 0.5 * (dvec3(box.low) + dvec3(box.high));
@@ -83,7 +83,7 @@ void find_shadowed(std::span<const Medium> media, LightAlong& along) {
     }
 }
 
-// Cuts the lit stretches at the kinks and clips them to what the light reaches.
+// Splits the lit intervals at the kinks and clips them to the range of the light.
 void cut_lit(Interval<double> range, LightAlong& along) {
     std::sort(along.kinks.begin(), along.kinks.end());
     static thread_local std::vector<Interval<double>> pieces;
@@ -115,7 +115,7 @@ double LightAlong::shadow_voxels(double low, double high) const {
     for (const ShadowedInterval& one : shadowed)
         if (one.stretch.low < high && one.stretch.high > low) voxels = std::max(voxels, one.voxels);
     if (voxels == 0) return 0;
-    // Only movement across the light changes what stands before it.
+    // Only motion perpendicular to the light direction changes what occludes it.
     if (local()) return voxels * std::min(distance / std::max(distance_to(low, high), 1e-12), 1.0);
     return voxels * glm::length(glm::cross(direction, glm::normalize(dvec3(light->direction))));
 }

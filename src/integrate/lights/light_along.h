@@ -1,4 +1,4 @@
-// One light as one camera ray sees it: on which stretches its light arrives, and how much of it where.
+// One light along one camera ray: the intervals it reaches, and the amount of light at each point.
 #pragma once
 #include "base/math.h"
 #include "integrate/equi_angular.h"
@@ -15,42 +15,43 @@ struct Medium;
 
 struct LightAlong {
     const Light* light = nullptr;
-    LightPoint point;                       // that casts the shadows of this ray
+    LightPoint point;                       // point on the light used for this ray's shadows
     dvec3 origin{0}, direction{0};          // of the ray
-    double nearest = 0, distance = 0;       // local lights: where the ray passes, and how near
-    double cone_scale = 0, cone_offset = 1; // as ConeFalloff, in double
-    std::vector<Interval<double>> lit;      // ascending; cut where the light's strength has a kink
-    // Where grid fog may stand between ray and light, and its voxels per metre across the light: the ray has to be
-    // followed as finely as their shadows are drawn.
+    double nearest = 0, distance = 0;       // local lights: t of the closest point, and its distance
+    double cone_scale = 0, cone_offset = 1; // like ConeFalloff, in double
+    std::vector<Interval<double>> lit;      // ascending; split where the light's intensity has a kink
+    // Intervals where grid fog may lie between ray and light, and its voxels per meter perpendicular to the light:
+    // steps on the ray must resolve their shadows.
     struct ShadowedInterval {
         Interval<double> stretch;
         double voxels = 0;
     };
     std::vector<ShadowedInterval> shadowed;
-    std::vector<double> kinks; // memory that find_light() reuses
+    std::vector<double> kinks; // scratch memory of find_light()
 
     bool local() const { return !is_distant(*light); }
-    double distance_to(double low, double high) const; // from the light to the nearest point of a stretch, or infinite
-    double height() const;                             // of a local light over the ray, no less than its radius
-    EquiAngular<double> angles(double low, double high) const; // of a stretch seen from a local light
-    double shadow_voxels(double low, double high) const; // per metre, on a stretch that no end of one of these divides
+    // From the light to the nearest point of low..high; infinite for distant lights.
+    double distance_to(double low, double high) const;
+    double height() const; // distance of a local light from the ray, at least its radius
+    EquiAngular<double> angles(double low, double high) const; // low..high as seen from a local light
+    // Voxels per meter on low..high, which must not cross the end of a shadowed interval.
+    double shadow_voxels(double low, double high) const;
 };
 
-// Unshadowed light at a point of the ray, as arrival() of scene/light.h, in double.
+// Unshadowed light at a point of the ray, like arrival() of scene/light.h, in double.
 struct LightSamplesAt {
     dvec3 to_light;    // unit
     double amount = 0; // multiplies the light's intensity
-    dvec3 tint{1};     // likewise: colours of a gobo
+    dvec3 tint{1};     // likewise: gobo color
 };
 LightSamplesAt arriving_at(const LightAlong& along, double t);
 
-// Fills `along` for a ray: what its light reaches of 0..t_max, less what `slices` (may be null) shadow, behind
-// the grids among `media`.
+// Fills `along` for a ray: the parts of 0..t_max that the light reaches, minus the shadows of `slices` (may be null),
+// and the intervals behind the grids among `media`.
 void find_light(const Light& light, const LightPoint& point, const Ray& ray, const ShadowSlices* slices,
                 std::span<const Medium> media, LightAlong& along);
 
-// Point k of `count` points of a light, for a ray of a batch: well spread over the samples of a pixel. The centre of a
-// light that is a point.
+// Sample point k of `count` on a light for a ray, stratified over a pixel's samples; the center for point lights.
 LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, size_t light_index, uint32_t k,
                        uint32_t count);
 }

@@ -16,11 +16,11 @@ namespace tyndall {
 namespace {
 constexpr size_t max_lamps = 4;
 constexpr uint32_t points_asked = 1 << 12, points_of_lamp = 512;
-constexpr int row_step = 10, column_step = 15; // degrees of a lamp's table
-constexpr double nearly_even = 0.04;           // what a table may differ from its mean by without being one
-constexpr float ball_by_spread = 5.0f / 3; // square of a ball's radius by the mean square of the distance to its middle
+constexpr int row_step = 10, column_step = 15; // angular resolution of a lamp's profile, degrees
+constexpr double nearly_even = 0.04;           // relative variation below which a lamp needs no profile
+constexpr float ball_by_spread = 5.0f / 3;     // for a ball: radius² / mean squared distance to its center
 
-// A point of a surface; candela: what it sends along its normal.
+// A point on a surface; candela: intensity along its normal.
 struct SurfaceEmission {
     dvec3 position{0}, normal{0}, candela{0};
     double weight = 0; // luminance of the candela
@@ -29,9 +29,9 @@ struct SurfaceEmission {
 
 struct LampPart {
     std::vector<SurfaceEmission> points;
-    dvec3 middle{0}, spread{0}; // of the weights: mean, and mean squares of the distances to it
+    dvec3 middle{0}, spread{0}; // weighted mean position, and mean squared distance to it per axis
     double weight = 0;
-    std::vector<int> instances; // each once
+    std::vector<int> instances; // unique
 };
 
 LampPart part_of(std::vector<SurfaceEmission> points) {
@@ -66,7 +66,7 @@ std::vector<SurfaceEmission> points_of(const EmissiveTriangles& glow, const Occl
     return points;
 }
 
-// Those of whole meshes, half of these before and half behind the middle of them along the axis that they spread most.
+// Splits a part into two halves of whole meshes, sorted along the axis of largest spread.
 std::pair<LampPart, LampPart> halves(const LampPart& part) {
     std::vector<std::pair<double, int>> order;
     const int axis = part.spread.x >= std::max(part.spread.y, part.spread.z) ? 0
@@ -87,12 +87,12 @@ std::pair<LampPart, LampPart> halves(const LampPart& part) {
     return {part_of(std::move(first)), part_of(std::move(second))};
 }
 
-// The part of several meshes whose size makes the most of its light come from elsewhere.
+// Error measure of replacing a part by one lamp: weight times spread; 0 for a single mesh, which cannot be split.
 double wrongness(const LampPart& part) {
     return part.instances.size() < 2 ? 0 : part.weight * (part.spread.x + part.spread.y + part.spread.z);
 }
 
-// Some points that stand for all, evenly spread over their order, which is that of the triangles.
+// Keeps a subset of points, evenly spaced in triangle order, rescaled to the same total weight.
 void thin_out(LampPart& part) {
     if (part.points.size() <= points_of_lamp) return;
     std::vector<SurfaceEmission> kept;
@@ -118,8 +118,7 @@ std::vector<LampPart> parts_of(const EmissiveTriangles& glow, const Occluders& s
     return parts;
 }
 
-// Calls visit(point, cosine over square metres) with what the point shows to `eye`: a place, or a direction if it is
-// far.
+// Calls visit(point, visible cosine / squared distance) for each point seen from `eye`, a direction if `far`.
 template<class Visit>
 void look_at(const LampPart& part, const Occluders& glowing, dvec3 eye, bool far, const Visit& visit) {
     Occluders::ShadowRays rays{};
@@ -149,7 +148,7 @@ dvec3 seen_from(const LampPart& part, const Occluders& glowing, dvec3 eye, bool 
     return sum;
 }
 
-// The axis that most of the surface faces, by some steps of the power method.
+// The dominant normal axis of the surface, by power iteration.
 vec3 axis_of(const LampPart& part) {
     glm::dmat3 sum(0);
     for (const SurfaceEmission& point : part.points)
@@ -159,7 +158,7 @@ vec3 axis_of(const LampPart& part) {
     return vec3(axis);
 }
 
-// Candela in every direction as a profile, with their mean color; `lamp` has its place.
+// Sets the lamp's mean color and its directional intensity as a profile; the lamp's position must be set.
 void aim(const LampPart& part, const Occluders& glowing, Light& lamp) {
     auto filter = std::make_shared<LightFilter>();
     filter->direction = lamp.direction = axis_of(part);
@@ -190,7 +189,7 @@ void aim(const LampPart& part, const Occluders& glowing, Light& lamp) {
     lamp.filter = std::move(filter);
 }
 
-// How far the lamp is off what it stands for, at a place.
+// Relative error of the lamp at a position, compared with the surfaces it approximates.
 double off_by(const LampPart& part, const Occluders& glowing, const Light& lamp, dvec3 place) {
     const double exact = luminance(vec3(seen_from(part, glowing, place, false)));
     const dvec3 offset = place - dvec3(lamp.position);
@@ -200,7 +199,7 @@ double off_by(const LampPart& part, const Occluders& glowing, const Light& lamp,
     return std::abs(luminance(vec3(shown)) - exact) / std::max(exact, lamps_tolerance * brightest);
 }
 
-// Metres from the lamp, along the axes and the diagonals between them, beyond which it is not off by more than a share.
+// Distance from the lamp, meters, beyond which its error is within lamps_tolerance, tested in 26 directions.
 double reach_of(const LampPart& part, const Occluders& glowing, const Light& lamp) {
     constexpr double farthest = 40, nearer = 0.85; // in radii
     double reach = double{lamp.radius};

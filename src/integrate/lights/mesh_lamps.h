@@ -1,4 +1,4 @@
-// Lamps that stand for glowing surfaces where techniques know of nothing else.
+// Lamps that approximate emissive surfaces for techniques that support only lamps.
 #pragma once
 #include "scene/light.h"
 #include "trace/snapshot.h"
@@ -8,18 +8,18 @@
 
 namespace tyndall {
 struct MeshLamps {
-    // At most four, each in the middle of the power of some meshes, with their candela in every direction (what they
-    // shadow of themselves left out). They shine on fog alone.
+    // At most four, each at the power-weighted center of some meshes, with their directional intensity (including
+    // self-shadowing). They illuminate only fog.
     std::vector<Light> lamps;
-    double reach = 0;  // metres from a lamp: beyond, the light it stands for is off by no more than lamps_tolerance
-    CasterSet casters; // what shadows them: all that does not glow
+    double reach = 0;  // meters; farther from a lamp its error is at most lamps_tolerance
+    CasterSet casters; // shadow casters for the lamps: all non-emissive surfaces
 };
 
 inline constexpr double lamps_tolerance = 0.1;
 
-// Of the opaque surfaces of a snapshot that emit; null where there are none.
+// Lamps for the opaque emissive surfaces of a snapshot; null if there are none.
 std::shared_ptr<const MeshLamps> mesh_lamps(const Snapshot& snapshot);
 
-// The snapshot with lamps for its glowing surfaces behind its own lights, if they are `wanted`.
+// The snapshot with lamps for its emissive surfaces appended to its lights, if `wanted`.
 Snapshot with_mesh_lamps(Snapshot snapshot, bool wanted);
 }

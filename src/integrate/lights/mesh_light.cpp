@@ -1,6 +1,6 @@
-// Light of glowing surfaces that fog scatters once towards the eye. Points of them are picked by area and brightness,
-// and distances both evenly in the angle around such a point and in proportion to what would be seen from there, which
-// share it (balance heuristic).
+// Single scattering of light from emissive surfaces. Surface points are sampled by power; distances both equi-angularly
+// around such a point and in proportion to extinction times transmittance to the eye, combined by multiple importance
+// sampling (balance heuristic).
 #include "integrate/lights/path_lights.h"
 
 #include "trace/lights/emissive_triangles.h"
@@ -11,9 +11,9 @@ namespace tyndall {
 namespace {
 enum Use : uint32_t { use_distance = 0x4e54, use_triangle, use_place };
 
-constexpr double closest_share = 1e-5; // from where angles are measured, of the ray's length in fog
+constexpr double closest_share = 1e-5; // minimum equi-angular height, relative to the ray's length in fog
 
-// What glows, and the surfaces that it is of.
+// Emissive triangles, and the surfaces they belong to.
 struct GlowingSurfaces {
     std::shared_ptr<const EmissiveTriangles> triangles;
     std::shared_ptr<const Occluders> occluders;
@@ -24,7 +24,7 @@ EmissivePoint pick_point(const GlowingSurfaces& light, const RayBatch& batch, si
                            point_numbers(batch, i, k, count, use_place));
 }
 
-// One of `count` ways from a distance of the ray to a point that glows.
+// Appends one of `count` pairs of paths: from the point at distance t to a point on an emissive surface.
 void append_path(const ScatteringFog& fog, const Ray& ray, const SeenFog& seen, const AngleDistances& angles, double t,
                  size_t piece, double count, const EmissivePoint& target, size_t number,
                  std::vector<ScatterPath>& paths) {
@@ -51,7 +51,7 @@ void append_ray(const GlowingSurfaces& light, const ScatteringFog& fog, const Ra
     const Ray& ray = batch.rays[i];
     const FogPieces& pieces = seen.pieces;
     const double min_height = closest_share * (pieces.pieces.back().high - pieces.pieces.front().low);
-    const auto pairs = static_cast<uint32_t>(fog.points); // of distances, one by angle and one by fog
+    const auto pairs = static_cast<uint32_t>(fog.points); // of distances: one equi-angular, one by the fog
     for (uint32_t k = 0; k < pairs; ++k) {
         const vec2 u = point_numbers(batch, i, k, pairs, use_distance);
         const auto append = [&](bool by_angle, uint32_t point) {

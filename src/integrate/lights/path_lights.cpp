@@ -33,12 +33,13 @@ void pass_surfaces(const Occluders& casters, std::span<const ScatterPath> paths,
     casters.transmission(rays, shares);
 }
 
-// Whether any of it sends light on.
+// True if any medium scatters light.
 bool scatters(const ScatteringFog& fog) {
     return std::ranges::any_of(fog.media, [](const Medium& medium) { return max_component(medium.optics.albedo) > 0; });
 }
 
-// Adds to the radiance of the rays, and to a part of it where there are parts, what comes to the eye on the ways.
+// Traces the shadow rays of the paths and adds their light to the radiance of the camera rays, and to the light's part
+// if parts are requested.
 void add_paths(const ScatteringFog& fog, const PathLight& light, std::span<const ScatterPath> paths,
                const RayBatch& batch, std::span<Scatter> results) {
     const bool parts = !batch.parts.empty();
@@ -65,7 +66,7 @@ void add_path_lights(const ScatteringFog& fog, std::span<const PathLight> lights
                      std::span<Scatter> results) {
     static thread_local FogPieces pieces[16];
     static thread_local std::vector<ScatterPath> paths;
-    std::optional<SeenFog> seen[16]; // of rays that meet fog
+    std::optional<SeenFog> seen[16]; // for rays that hit fog
     for (size_t i = 0; i < batch.rays.size(); ++i) {
         find_fog(batch.rays[i], fog.media, fog.min_transmittance, pieces[i]);
         if (!pieces[i].pieces.empty() && pieces[i].depth > 0)

@@ -1,5 +1,5 @@
-// Light that has been scattered before, inside the kernel of lit fog (see base/simd/simd.h for how such files are
-// compiled).
+// Multiple scattering from the fluence grid, part of the single-scattering kernel (see base/simd/simd.h for how such
+// files are compiled).
 #if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_FLUENCE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FLUENCE_SIMD_H
 #undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FLUENCE_SIMD_H
@@ -12,10 +12,10 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-constexpr double deepest_part = 0.5; // optical depths
-constexpr double max_parts = 4096;   // of a piece
+constexpr double deepest_part = 0.5; // maximum optical depth per part
+constexpr double max_parts = 4096;   // per piece
 
-// Of all fog, as far as it dims the view.
+// Extinction of all fog, scaled by the style's view_depth.
 double extinction_at(const SingleScattering& frame, vec3 point) {
     double extinction = 0;
     for (const Medium& medium : frame.snapshot.media)
@@ -23,7 +23,7 @@ double extinction_at(const SingleScattering& frame, vec3 point) {
     return extinction * frame.style.view_depth;
 }
 
-// In the middle of every step of sampled fog, where its extinction is known already.
+// For sampled fog: evaluates the middle of every step, where the extinction is already known.
 void add_fluence_rows(Packet& packet) {
     const SingleScattering& frame = packet.frame;
     const std::vector<Medium>& media = frame.snapshot.media;
@@ -56,7 +56,7 @@ void add_fluence_rows(Packet& packet) {
     }
 }
 
-// A node for every cell of the grid on the way and every half optical depth, in fog in closed form.
+// For homogeneous and height fog: at least one node per grid cell and per half optical depth.
 void add_fluence_nodes(Packet& packet) {
     const FluenceGrid& grid = *packet.frame.fluence;
     const RaySegments& cuts = packet.scratch.cuts;
@@ -64,7 +64,7 @@ void add_fluence_nodes(Packet& packet) {
     for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
         const Ray& ray = packet.batch.rays[i];
         const Interval<float> inside = clip(grid.bounds, ray.origin, ray.direction, {0, ray.t_max});
-        double before = 0; // optical depth, about
+        double before = 0; // approximate optical depth
         for (int k = 0; k < cuts.pieces[i] && before < packet.frame.opaque; ++k) {
             const float* at = cuts.at.data() + 16 * static_cast<size_t>(k) + i;
             const double low = std::max(at[0], inside.low), high = std::min(at[16], inside.high);

@@ -1,5 +1,5 @@
-// Whole steps in the light of a sun, the same step of all rays at once, inside the kernel of lit fog (see
-// base/simd/simd.h for how such files are compiled).
+// Steps that are fully lit by a distant light, processed for all rays at once; part of the single-scattering kernel
+// (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H
 #undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_FULL_STEPS_SIMD_H
@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Adds the steps noted in `whole`, each by its middle, where the fog's extinction is known already.
+// Adds the steps marked in `whole`, each evaluated at its midpoint, where the extinction is already known.
 void add_full_steps(Packet& packet, size_t index) {
     const SingleScattering& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
@@ -21,7 +21,7 @@ void add_full_steps(Packet& packet, size_t index) {
     const float* at = packet.scratch.cuts.at.data();
     const float* depths = packet.scratch.depth.data();
 
-    // Light comes from the same side everywhere.
+    // The light direction is the same everywhere, so evaluate the phase functions once per ray.
     const Floats cosine = dot(splat(-light.direction), direction);
     std::vector<std::array<float, 16>>& phase = packet.scratch.phase;
     phase.resize(media.size());

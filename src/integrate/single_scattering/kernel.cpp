@@ -1,4 +1,4 @@
-// Fog between exact shadows along a packet of rays, light by light.
+// Single scattering with exact shadows along a packet of rays, light by light.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "integrate/single_scattering/kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Lanes without a ray repeat the last.
+// Unused lanes repeat the last ray.
 Packet make_packet(const SingleScattering& frame, const RayBatch& batch, Scratch& scratch) {
     Packet packet{frame, batch, scratch, {}, {}, {}};
     for (size_t i = 0; i < 16; ++i) {
@@ -27,7 +27,7 @@ Packet make_packet(const SingleScattering& frame, const RayBatch& batch, Scratch
     return packet;
 }
 
-// What the light reaches of a ray's fog, from first to last. Nothing divides what a sun reaches.
+// The interval of a ray's fog that a light reaches. For local lights, along.lit holds its subintervals.
 Interval<double> reach_of(Packet& packet, const Light& light, size_t i) {
     const RaySegments& cuts = packet.scratch.cuts;
     if (cuts.pieces[i] == 0) return {};
@@ -42,7 +42,7 @@ Interval<double> reach_of(Packet& packet, const Light& light, size_t i) {
     return {std::max<double>(lit.front().low, cuts.low(i)), std::min<double>(lit.back().high, cuts.high(i))};
 }
 
-// Nodes on the lit stretches within reach.
+// Pushes nodes on the lit intervals within reach.
 void push_all(Packet& packet, size_t index, const Interval<double> (&reached)[16]) {
     Scratch& scratch = packet.scratch;
     const bool sun = is_distant(packet.frame.snapshot.lights[index]);
@@ -54,7 +54,7 @@ void push_all(Packet& packet, size_t index, const Interval<double> (&reached)[16
     }
 }
 
-// Every ray sees one point of the light, or several in turn, each with shadows of its own.
+// Shadows by slices: every ray uses one or more sample points on the light, each with its own shadows.
 void add_sliced(Packet& packet, size_t index, const Interval<double> (&reached)[16]) {
     const SingleScattering& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
@@ -77,7 +77,7 @@ void add_sliced(Packet& packet, size_t index, const Interval<double> (&reached)[
     packet.light_share = 1;
 }
 
-// Shadows, if any, begin at the light's centre.
+// Shadows, if any, are cast from the light's center.
 void add_cut_out(Packet& packet, size_t index, const Interval<double> (&reached)[16]) {
     Scratch& scratch = packet.scratch;
     int dark[16];
@@ -112,7 +112,7 @@ void add_light(Packet& packet, size_t index) {
     if (packet.full_steps) add_full_steps(packet, index);
 }
 
-// Optical depth of sampled fog at every cut, by the density in the middle of each step.
+// Optical depth of sampled fog at every cut, from the density at the midpoint of each step.
 void sample_depths(Packet& packet) {
     Scratch& scratch = packet.scratch;
     const size_t steps = static_cast<size_t>(scratch.cuts.most);
@@ -135,7 +135,7 @@ void sample_depths(Packet& packet) {
     }
 }
 
-// The optical depth of each whole ray.
+// The total optical depth of each ray.
 Floats find_depths(const Packet& packet) {
     const RaySegments& cuts = packet.scratch.cuts;
     if (packet.frame.sampled) return load(packet.scratch.depth.data() + 16 * static_cast<size_t>(cuts.most));
@@ -143,7 +143,7 @@ Floats find_depths(const Packet& packet) {
     return closed_depth(packet.frame, {Packet::rays(packet.origin), Packet::rays(packet.direction), load(end)});
 }
 
-// What emission and ambient light add for each share of light the fog takes away, where all media agree; -1 elsewhere.
+// The source function of emission and ambient light if it is the same for all media; else -1.
 vec3 even_glow(const SingleScattering& frame, int light) {
     vec3 common(0);
     for (const Medium& medium : frame.snapshot.media) {
@@ -163,7 +163,7 @@ void add_glow(Packet& packet, int light, const Floats& depth) {
     if (even == vec3(0)) return;
     const size_t count = packet.batch.rays.size();
     if (even.x >= 0 && frame.style.range >= StyleSettings().range) {
-        alignas(64) float taken[16]; // ∫ of the depth, as the style sees it
+        alignas(64) float taken[16]; // ∫ transmittance with style.view_depth over the optical depth
         store(depth * mean_transmittance(depth * frame.style.view_depth), taken);
         for (size_t i = 0; i < count; ++i) packet.radiance[i] += even * taken[i];
         return;

@@ -1,5 +1,5 @@
-// Nodes on the lit stretches of rays, inside the kernel of lit fog (see base/simd/simd.h for how such files are
-// compiled).
+// Places quadrature nodes on the lit intervals of rays; part of the single-scattering kernel (see base/simd/simd.h for
+// how such files are compiled).
 #if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_QUADRATURE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_QUADRATURE_SIMD_H
 #undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_QUADRATURE_SIMD_H
@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// How far the angle seen from a local light may change on one set of nodes: less where the phase function has a lobe.
+// Maximum angle, seen from a local light, that one quadrature rule may span; smaller for narrow phase functions.
 double widest_angle(const SingleScattering& frame) {
     float g = 0;
     for (const Medium& medium : frame.snapshot.media)
@@ -20,7 +20,7 @@ double widest_angle(const SingleScattering& frame) {
     return std::min(0.8, 4 * (1 - double(g)));
 }
 
-// Far along the ray the angle hardly changes while fog goes on: parts end at ±1, ±3, ±9 ... times the light's distance.
+// Far along the ray the angle hardly changes but the fog does: parts end at ±1, ±3, ±9 ... times the light's distance.
 double next_bound(double x) {
     double bound = 1;
     while (bound <= std::abs(x)) bound *= 3;
@@ -28,29 +28,29 @@ double next_bound(double x) {
     return -bound / (bound / 3 < -x ? 3 : 9);
 }
 
-// The cut of a narrow lobe that follows.
+// The next cut for a narrow lobe after x.
 double next_cut(const LobeCuts& cuts, double x) {
     for (int i = 0; i < cuts.count; ++i)
         if (double(cuts.slopes[i]) > x) return double(cuts.slopes[i]);
     return infinity;
 }
 
-// A piece of a ray in which nothing has a kink.
+// A piece of a ray without kinks in the integrand.
 struct Piece {
     int light;
     size_t ray;
     int cut;
     double low, high;
-    bool soft = false; // in the soft edge of a spot
+    bool soft = false; // in the soft edge of a spot light
 };
 
-// Into how many parts of at most `widest` the angle between two slopes is cut.
+// Number of equal parts of at most `widest` in the angle between two slopes.
 double angular_parts(double from, double to, double widest) {
-    if (widest >= 0.8) return 1; // bounds are never further apart
+    if (widest >= 0.8) return 1; // bounds are never farther apart
     return std::ceil((std::atan(to) - std::atan(from)) / widest);
 }
 
-// The soft edge of a spot is a polynomial of fourth degree across the beam; elsewhere fog is what varies.
+// The quadrature rule of a piece. The soft edge of a spot light, a fourth-degree polynomial, needs more nodes.
 std::span<const QuadratureNode> rule_for(const Packet& packet, const Piece& piece) {
     if (piece.light >= 0) {
         const size_t light = static_cast<size_t>(piece.light);
@@ -62,7 +62,7 @@ std::span<const QuadratureNode> rule_for(const Packet& packet, const Piece& piec
     return gauss_legendre(packet.spread == Spread::angle ? 2 + more / 2 : 1);
 }
 
-// The angle that a set of nodes of a local light's piece may span.
+// Maximum angle that one quadrature rule may span on a piece lit by a local light, also limited by its filter.
 double widest_angle(const Packet& packet, const Piece& piece) {
     const double smooth = packet.frame.sampled ? 1 : widest_angle(packet.frame);
     const FilterSteps& steps = packet.frame.filter_steps[static_cast<size_t>(piece.light)];
@@ -93,7 +93,7 @@ void push_piece(Packet& packet, const Piece& piece) {
         push_node(packet, piece.light, piece.ray, piece.cut, piece.low, piece.high, node.at, node.weight);
 }
 
-// Whether a piece between cuts can be seen to hold fog.
+// True if a piece between cuts contains visible fog.
 HWY_INLINE bool counts(const Packet& packet, size_t ray, int cut) {
     if (!packet.frame.sampled) return true;
     const float* depth = packet.scratch.depth.data() + 16 * static_cast<size_t>(cut) + ray;
@@ -112,7 +112,7 @@ HWY_INLINE void note_whole(Packet& packet, size_t ray, int cut) {
         packet.scratch.whole[16 * static_cast<size_t>(cut) + ray] += static_cast<float>(packet.light_share);
 }
 
-// Cuts lit stretches at the cuts of the fog and at the kinks of the light, which divide what it reaches.
+// Splits lit intervals at the cuts of the fog and at the light's kinks, which are the ends of `reached` intervals.
 void push_lit(Packet& packet, int light, size_t ray, std::span<const Interval<double>> lit,
               std::span<const Interval<double>> reached) {
     const float* at = packet.scratch.cuts.at.data() + ray;

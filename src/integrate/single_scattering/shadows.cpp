@@ -1,4 +1,4 @@
-// What rays cross of the shadow volumes.
+// Intersections of rays with shadow volumes.
 #include "integrate/single_scattering/single_scattering.h"
 #include "trace/occlusion/occluders.h"
 
@@ -34,7 +34,7 @@ void find_shadows(const SingleScattering& frame, size_t light, const RayBatch& b
         const int lane = static_cast<int>(i);
         if (comes_from(*caster.view, frame.camera, ray)) {
             place_ray(*caster.view, ray, lane, rays);
-        } else { // not a ray of the camera: its origin is an eye of its own
+        } else { // not a camera ray: use its origin as the eye
             ShadowViewRays alone;
             alone.edges = rays.edges;
             const ShadowView view = view_from(*caster.volumes, dvec3(ray.origin));

@@ -1,5 +1,5 @@
-// Shells: the sides of shadow volumes as sheets of light, inside the kernel of lit fog (see base/simd/simd.h for how
-// such files are compiled).
+// Shells: the sides of shadow volumes drawn as sheets of light; part of the single-scattering kernel (see
+// base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_SHELLS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_SHELLS_SIMD_H
 #undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_SHELLS_SIMD_H
@@ -13,13 +13,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Where a ray goes through a sheet.
+// Intersection of a ray with a sheet.
 struct Shell {
-    double t, behind; // the edge that casts it, metres
-    int change = 0;   // of the count of volumes
+    double t, behind; // behind: meters behind the edge that casts it
+    int change = 0;   // of the shadow volume count
 };
 
-// The mantle of a spot's beam, half way down its soft edge: it changes no count.
+// Adds the surface of a spot light's cone, halfway down its soft edge; it does not change the count.
 void append_mantle(const Light& light, const Ray& ray, std::vector<Shell>& shells) {
     if (!has_cone(light)) return;
     const dvec3 origin(ray.origin), direction(ray.direction), apex(light.position);
@@ -29,8 +29,7 @@ void append_mantle(const Light& light, const Ray& ray, std::vector<Shell>& shell
         if (!beam.empty() && std::isfinite(t)) shells.push_back({t, glm::distance(origin + t * direction, apex)});
 }
 
-// A sheet of light wherever the ray goes through a side from light into shadow or back: as bright as some metres of the
-// fog.
+// Pushes a node wherever the ray crosses a side between light and shadow, as bright as a given length of lit fog.
 void push_shells(Packet& packet, int light, size_t ray, int dark, Interval<double> reached) {
     static thread_local std::vector<Shell> shells;
     shells.clear();

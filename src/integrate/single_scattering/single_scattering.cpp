@@ -10,9 +10,9 @@
 
 namespace tyndall {
 namespace {
-// Triangles beyond which shadow rays are taken instead. Slices, of soft lights, are cut anew by every ray: among
-// scattered balls of 200 000 triangles they take seven times as long as 28 shadow rays. Volumes, of others, are made
-// once, for rays from one point: those through a lens are taken to slices.
+// Triangle counts above which shadow rays are used instead. Slices, for soft lights, are recomputed for every ray:
+// among scattered balls of 200 000 triangles they take seven times as long as 28 shadow rays. Volumes, for other
+// lights, are built once for rays from one point, so cameras with a lens use slices.
 constexpr uint64_t max_sliced = 200'000, max_with_volumes = 2'000'000;
 }
 

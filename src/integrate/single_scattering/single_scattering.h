@@ -1,5 +1,5 @@
-// Light scattered once in fog: what is made once per frame, and the integral along a packet of rays over the stretches
-// that each light reaches. Behind march and shadow-volume.
+// Single scattering: per-frame data, and the integral along a packet of rays over the intervals that each light
+// reaches. Used by the march and shadow-volume techniques.
 #pragma once
 #include "base/gauss_legendre.h"
 #include "integrate/lights/light_along.h"
@@ -15,86 +15,85 @@
 #include <optional>
 
 namespace tyndall {
-// How a light's shadows are found along rays: exactly, of its centre or of a point that each ray picks; or asked for at
-// points of the ray, by shadow rays or in a shadow map.
+// How a light's shadows along rays are computed: exactly, from its center (volumes) or from a sample point per ray
+// (slices); or at points on the ray, by shadow rays or a shadow map.
 enum class ShadowsBy { none, volumes, slices, rays, maps };
 
-// The quickest that is exact; rays where surfaces have alpha or are too many. `room`: for the volumes of all lights
-// that would have some.
+// The fastest exact method; rays if surfaces have alpha or too many triangles. `room`: there is memory for the volumes
+// of all lights (has_room_for_volumes()).
 ShadowsBy exact_shadows(const View& view, const Light& light, const Occluders& occluders, bool room);
 bool has_room_for_volumes(const View& view, const Snapshot& snapshot);
 
 struct LightShadows {
     ShadowsBy by = ShadowsBy::none;
-    std::shared_ptr<const ShadowView> view; // with `volumes`, and as the camera sees them
+    std::shared_ptr<const ShadowView> view; // the volumes as seen from the camera
     std::shared_ptr<const ShadowVolumes> volumes;
-    std::shared_ptr<const ShadowMap> map; // with `maps`
-    const ShadowSlices* slices = nullptr; // with `slices`; the snapshot's
+    std::shared_ptr<const ShadowMap> map; // for `maps`
+    const ShadowSlices* slices = nullptr; // for `slices`; owned by the snapshot
 };
 
-// The sides of the volumes as bright sheets instead of the light between them.
+// Draws the sides of shadow volumes as bright sheets instead of integrating the light between them.
 struct Shells {
-    float length;    // metres behind the occluder at which a shell has faded out
-    float intensity; // share of that length: the depth of lit fog a shell is as bright as
+    float length;    // meters behind the occluder at which a shell has faded out
+    float intensity; // share of that length: a shell is as bright as this depth of lit fog
 };
 
-// Nodes of a ray on all that it sees of a light with a gobo.
+// Quadrature nodes per ray for a light with a gobo.
 inline constexpr double gobo_nodes = 64;
 
-// How finely rays follow a light's IES profile and gobo.
+// Sampling resolution along rays for a light's IES profile and gobo.
 struct FilterSteps {
-    double angle = 0;     // seen from the light, that one set of nodes may span; 0 = no filter
-    double parts = 1;     // that what a ray sees of the light has at most
-    bool sampled = false; // by one jittered node each: of a gobo too fine for any quadrature
+    double angle = 0;     // maximum angle, seen from the light, per quadrature rule; 0 = no filter
+    double parts = 1;     // maximum number of parts per ray
+    bool sampled = false; // one jittered node per part, for gobos too fine for quadrature
 };
 FilterSteps filter_steps(const Light& light);
 
 struct SingleScattering {
-    Snapshot snapshot; // media and lights as the settings see them
+    Snapshot snapshot; // media and lights after applying the settings
     StyleSettings style;
     Camera camera;
-    float margin = 0;               // pixels a ray may stray from its pixel
-    bool sampled = false;           // fog is; otherwise it is integrated in closed form
-    int nodes = 4;                  // Gauss–Legendre nodes on each lit stretch of fog in closed form
-    int steps = 24;                 // along a ray of sampled fog, of equal length ...
-    std::optional<MarchSteps> rule; // ... or as this asks for
-    float opaque = 16;              // optical depth behind which sampled fog is not asked for
-    int light_points = 1;           // of a soft light, asked for shadows at once
-    LobeCuts lobe;                  // of the fog in the light of lamps
+    float margin = 0;               // pixels by which a ray may leave its pixel
+    bool sampled = false;           // fog is sampled in steps; otherwise integrated analytically
+    int nodes = 4;                  // Gauss–Legendre nodes per lit interval of analytic fog
+    int steps = 24;                 // equal steps per ray of sampled fog ...
+    std::optional<MarchSteps> rule; // ... or steps by this rule
+    float opaque = 16;              // optical depth beyond which sampled fog is skipped
+    int light_points = 1;           // shadow sample points per soft light
+    LobeCuts lobe;                  // cuts for narrow lobes under local lights
     std::optional<Shells> shells;
-    std::vector<Box> heterogeneous; // fog that is not what it is taken for
-    std::vector<Medium> fields;     // media that only emit, for the exact march; others add them by themselves
+    std::vector<Box> heterogeneous; // bounds of grids approximated as homogeneous
+    std::vector<Medium> fields;     // emission-only media, for the exact march; others add them separately
     std::vector<LightDepth> depths;
     std::vector<ConeFalloff> cones;
     std::vector<FilterSteps> filter_steps;      // one per light
     std::vector<LightShadows> shadows;          // one per light
-    std::shared_ptr<const FluenceGrid> fluence; // null = light scatters once only
+    std::shared_ptr<const FluenceGrid> fluence; // null = no multiple scattering
 };
 
-// Whether a medium is a grid.
+// True if any medium is a grid.
 bool has_grid(const Snapshot& snapshot);
 
-// Fills depths, cones and shadows of the frame's lights, and what it knows of the camera; `by` picks the shadows of
-// lights that cast some.
+// Fills the per-light data and the camera of the frame; `by` selects the shadow method of lights that cast shadows.
 void add_lights(const View& view, LightTransmittance method, int light_resolution,
                 const std::function<ShadowsBy(const Light&)>& by, SingleScattering& frame);
 
-// Where rays are cut: between cuts the fog is smooth, or a step long.
+// Cuts along rays, between which the fog is smooth or is one step.
 struct RaySegments {
-    std::vector<float> at; // [cut·16 + ray], ascending; the last repeated where other rays have more
-    int pieces[16];        // between the cuts of each ray; 0 without fog
-    int most = 0;          // of any ray
+    std::vector<float> at; // [cut·16 + ray], ascending; the last is repeated if other rays have more
+    int pieces[16];        // pieces between the cuts of each ray; 0 without fog
+    int most = 0;          // maximum over the rays
 
     float low(size_t ray) const { return at[ray]; }
     float high(size_t ray) const { return at[16 * static_cast<size_t>(pieces[ray]) + ray]; }
 };
 void find_segments(const SingleScattering& frame, std::span<const Ray> rays, RaySegments& cuts);
 
-// Fog along up to 16 rays.
+// Single scattering along up to 16 rays.
 void single_scattering_packet(const SingleScattering& frame, const RayBatch& batch, std::span<Scatter> results);
 
-// What rays cross of the volumes of a light, up to the ends of `reached`; `dark` = the counts before. Rays whose
-// stretch is empty are left out.
+// Finds the crossings of rays with a light's shadow volumes up to the ends of `reached`; `dark` = the volume counts at
+// the ray origins. Rays with an empty interval are skipped.
 void find_shadows(const SingleScattering& frame, size_t light, const RayBatch& batch,
                   const Interval<double> (&reached)[16], std::vector<ShadowCrossing>& crossings, int (&dark)[16]);
 }

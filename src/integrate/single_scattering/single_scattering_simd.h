@@ -1,5 +1,5 @@
-// The integrand of lit fog at sixteen points of any rays, inside its kernel (see base/simd/simd.h for how such files
-// are compiled).
+// The single-scattering integrand at sixteen points on any rays of a packet; part of the single-scattering kernel (see
+// base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_INTEGRATE_SINGLE_SCATTERING_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_INTEGRATE_SINGLE_SCATTERING_SIMD_H
 #undef TYNDALL_INTEGRATE_SINGLE_SCATTERING_SIMD_H
@@ -20,36 +20,36 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 constexpr int no_light = -1;       // emission and ambient light
-constexpr int any_light = -2;      // light that has been scattered before
-constexpr int ambient_light = -3;  // of no_light
-constexpr int emission_light = -4; // likewise
+constexpr int any_light = -2;      // multiple scattering
+constexpr int ambient_light = -3;  // the ambient part of no_light
+constexpr int emission_light = -4; // the emission part
 
-// Places on stretches of rays, sixteen at once, whichever rays they are on. Intervals count from where their ray
-// passes the light (see Spread).
+// A batch of sixteen quadrature nodes on any rays. With Spread::angle, intervals are relative to the point on the ray
+// closest to the light.
 struct Nodes {
     alignas(64) float low[16], high[16];
-    alignas(64) float share[16];  // of the stretch that lies before the node
-    alignas(64) float weight[16]; // in the sum over the stretch
+    alignas(64) float share[16];  // position of the node in its interval, 0..1
+    alignas(64) float weight[16]; // quadrature weight
     alignas(64) int32_t ray[16];
-    alignas(64) int32_t cut[16]; // the last before the stretch: cut·16 + ray
+    alignas(64) int32_t cut[16]; // last cut before the interval: cut·16 + ray
     int count = 0;
 };
 
-// Memory that a thread keeps from packet to packet.
+// Per-thread memory reused from packet to packet.
 struct Scratch {
     RaySegments cuts;
-    std::vector<float> depth;                 // of sampled fog: optical depth from the eye to each cut
-    std::vector<float> extinction;            // and in the middle of each step: [(step·media + medium)·16 + ray]
-    std::vector<float> whole;                 // share of a sun that lights all of a step: [step·16 + ray]
-    std::vector<std::array<float, 16>> phase; // of each medium, on each ray
+    std::vector<float> depth;      // sampled fog: optical depth from the eye to each cut
+    std::vector<float> extinction; // sampled fog: at each step's midpoint, [(step·media + medium)·16 + ray]
+    std::vector<float> whole;      // share of a distant light that lights the whole step: [step·16 + ray]
+    std::vector<std::array<float, 16>> phase; // phase function per medium and ray
     std::vector<ShadowCrossing> crossings;
     std::vector<Interval<double>> lit[16];
-    LightAlong along[16]; // of local lights
+    LightAlong along[16]; // for local lights
     Nodes nodes;
 };
 
-// How nodes share a stretch: by its length; by the angle it is seen under from a local light, in which 1/r² is constant
-// (Kulla & Fajardo 2012, section 4.1); or not at all, as points with a weight of their own.
+// How nodes are distributed on an interval: by length; by the angle seen from a local light, which cancels 1/r² (Kulla
+// & Fajardo 2012, section 4.1); or as single points with explicit weights.
 enum class Spread { length, angle, points };
 
 struct Packet {
@@ -57,22 +57,23 @@ struct Packet {
     const RayBatch& batch;
     Scratch& scratch;
     alignas(64) float origin[3][16], direction[3][16];
-    QuadratureNode jittered[16]; // the one node of each ray where shadows are sampled
+    QuadratureNode jittered[16]; // the single node per ray for sampled shadows
     Spread spread = Spread::length;
-    double light_share = 1;  // of the light that the current nodes are asked for
-    bool full_steps = false; // whether steps that are lit from end to end are noted in `whole`
-    alignas(64) float nearest[16] = {}, away[16] = {}; // where the rays pass the light, and how near; 0 unless `angle`
-    vec3 radiance[16] = {};                            // of the current light
+    double light_share = 1;  // share of the light that the current nodes represent
+    bool full_steps = false; // mark fully lit steps in `whole`
+    // t of the point closest to the light, and its distance; 0 unless `spread` is angle
+    alignas(64) float nearest[16] = {}, away[16] = {};
+    vec3 radiance[16] = {}; // from the current light
     int asked[16] = {};
 
-    // Of each ray, or of the ray of each node.
+    // Loads a vector per ray, or gathers it for the ray of each node.
     HWY_INLINE static Vec3s rays(const float (&v)[3][16]) { return {load(v[0]), load(v[1]), load(v[2])}; }
     HWY_INLINE static Vec3s rays(const float (&v)[3][16], const Ints& ray) {
         return {gather(v[0], ray), gather(v[1], ray), gather(v[2], ray)};
     }
 };
 
-// Light of one light scattered towards the eye per metre at the waiting nodes.
+// In-scattering from one light per meter at the queued nodes.
 HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& position, const Vec3s& direction) {
     const SingleScattering& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
@@ -95,7 +96,7 @@ HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& posi
     return scattered_light(light, frame.depths[index], position, amount, towards);
 }
 
-// Emission and ambient light per metre, or one of them.
+// Emission and scattered ambient light per meter, or one of them.
 HWY_INLINE Vec3s glow(const SingleScattering& frame, int light, const Vec3s& position) {
     const vec3 ambient = light == emission_light ? vec3(0) : frame.snapshot.ambient;
     Vec3s sum = splat(vec3(0));
@@ -113,7 +114,7 @@ HWY_INLINE Vec3s glow(const SingleScattering& frame, int light, const Vec3s& pos
     return sum;
 }
 
-// Light that has been scattered before, scattered towards the eye per metre.
+// In-scattering of multiply scattered light per meter.
 HWY_INLINE Vec3s scattered_again(const SingleScattering& frame, const Vec3s& position, const Vec3s& direction) {
     const std::vector<Medium>& media = frame.snapshot.media;
     return scattered_fluence(*frame.fluence, media, position, direction, [&](size_t m) HWY_ATTR {
@@ -127,7 +128,7 @@ HWY_INLINE Floats closed_depth(const SingleScattering& frame, const LightPaths& 
     return depth;
 }
 
-// Where the waiting nodes lie on their rays, and the lengths they stand for.
+// Positions of the queued nodes on their rays, and the lengths they represent.
 struct Placed {
     Floats t, length;
 };
@@ -141,7 +142,7 @@ HWY_INLINE Placed place_nodes(const Packet& packet, const Nodes& nodes, const In
     return {fused(slope, turning.height, gather(packet.nearest, ray)), turning.length(weight, slope)};
 }
 
-// Optical depth from the eye to the nodes: between cuts of sampled fog it grows evenly.
+// Optical depth from the eye to the nodes, linear between cuts of sampled fog.
 HWY_INLINE Floats depth_at(const Packet& packet, const Nodes& nodes, const LightPaths& to_nodes) {
     if (!packet.frame.sampled) return closed_depth(packet.frame, to_nodes);
     const float *at = packet.scratch.cuts.at.data(), *depth = packet.scratch.depth.data();
@@ -151,7 +152,7 @@ HWY_INLINE Floats depth_at(const Packet& packet, const Nodes& nodes, const Light
     return fused(gather(depth + 16, cut) - depth_before, max(min(share, 1.0f), 0.0f), depth_before);
 }
 
-// Adds the waiting nodes to their rays.
+// Evaluates the queued nodes and adds them to their rays.
 void add_nodes(Packet& packet, int light) {
     const SingleScattering& frame = packet.frame;
     Nodes& nodes = packet.scratch.nodes;
@@ -180,7 +181,7 @@ void add_nodes(Packet& packet, int light) {
     nodes.count = 0;
 }
 
-// A node on low..high, counted along the ray, behind the cut-th cut.
+// Queues a node on low..high after cut `cut`; evaluates the queue when it is full.
 HWY_INLINE void push_node(Packet& packet, int light, size_t ray, int cut, double low, double high, double share,
                           double weight) {
     Nodes& nodes = packet.scratch.nodes;

@@ -8,7 +8,8 @@
 namespace tyndall {
 namespace {
 constexpr int tile_side = 4;
-// A tile spreads at least as this share of the variance beside it, or of the picture's: chance may have hidden it.
+// A tile's variance counts as at least these shares of its neighbors' and of the image's mean: few samples may have
+// missed it.
 constexpr double beside_share = 1.0 / 16, image_share = 1.0 / 256;
 
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
@@ -20,10 +21,10 @@ double square_of_mean(const Image<vec3>& image) {
     return mean * mean;
 }
 
-// Sums over the pixels of tiles.
+// Sums over the pixels of each tile.
 struct Tiles {
     ivec2 low{0}, size{0};
-    std::vector<double> variance, squares, pixels, work; // squares: of the variances
+    std::vector<double> variance, squares, pixels, work; // squares: sums of squared variances
 
     size_t index(ivec2 tile) const { return static_cast<size_t>(tile.y) * size.x + tile.x; }
 };
@@ -39,7 +40,7 @@ Tiles empty_tiles(const Layers& layers) {
     return tiles;
 }
 
-// Of one sample's colour and fog light, each as a share of its own squared mean: enough for both.
+// Variances of one sample: the larger of color's and inscatter's, each relative to the layer's squared mean.
 Tiles relative_variances(const Layers& layers, const Image<float>& taken, double power) {
     const double color = square_of_mean(layers.color), fog = square_of_mean(layers.inscatter);
     Tiles tiles = empty_tiles(layers);
@@ -55,7 +56,7 @@ Tiles relative_variances(const Layers& layers, const Image<float>& taken, double
     return tiles;
 }
 
-// Variance of a pixel of each tile, raised to what lies around allows.
+// Variance per pixel of each tile, raised to a share of its neighbors' and of the image's mean.
 std::vector<double> cautious(const Tiles& tiles) {
     double sum = 0, pixels = 0;
     for (size_t i = 0; i < tiles.variance.size(); ++i) sum += tiles.variance[i], pixels += tiles.pixels[i];
@@ -73,7 +74,7 @@ std::vector<double> cautious(const Tiles& tiles) {
     return result;
 }
 
-// Of a pixel of each tile, as shares of the mean one's.
+// Cost per pixel of each tile, relative to the mean pixel's.
 std::vector<double> costs_of(const Tiles& tiles, double pixels) {
     double sum = 0;
     for (const double work : tiles.work) sum += work;
@@ -82,9 +83,9 @@ std::vector<double> costs_of(const Tiles& tiles, double pixels) {
     return result;
 }
 
-// What a picture's error comes from.
+// Where an image's error comes from, by tile.
 struct Sources {
-    std::vector<double> variances, costs, uneven; // of one sample of a pixel of each tile
+    std::vector<double> variances, costs, uneven; // per pixel and sample; uneven: mean v² / (mean v)² within the tile
     std::vector<double> pixels;
     double pixel_count = 0, power = 1;
 
@@ -103,11 +104,11 @@ Sources sources_of(const Tiles& tiles, double power) {
     return sources;
 }
 
-// Samples of each tile, up to a factor: the least cost of a bound. Where the error comes from few pixels, chance may
-// make it much larger than it is on the average: they take more than by their variances alone, until each counts for
-// what it adds to mean + z × deviation of the squared error.
+// Samples of each tile, up to a common factor, that reach an error bound at the least cost. If few pixels cause most of
+// the error, it may far exceed its expected value, so these pixels get more samples than their variance alone suggests:
+// each is weighted by what it contributes to mean + z × standard deviation of the squared error.
 std::vector<double> shares_of_samples(const Sources& sources) {
-    constexpr double deviations = noise_deviations * 1.41421356; // a sum of squares of normal numbers varies by 2 Σ v²
+    constexpr double deviations = noise_deviations * 1.41421356; // a sum of squared normals has the variance 2 Σ v²
     std::vector<double> shares(sources.variances.size()), weights = sources.variances;
     for (int pass = 0; pass < 12; ++pass) {
         double squares = 0;
@@ -123,7 +124,7 @@ std::vector<double> shares_of_samples(const Sources& sources) {
     return shares;
 }
 
-// Units of a pixel of a tile, in a picture of so many times as many samples as allotted.
+// Units of samples per pixel of a tile, in an image with `scale` times the allotted samples.
 double units_of(double scale, float samples, int unit, bool goes_on) {
     if (!(scale > 0)) return 0;
     const double wanted = scale * samples / unit, step = wanted >= many_allotted && !goes_on ? more_batches : 1;
@@ -154,7 +155,7 @@ Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& e
         return result;
     };
 
-    // The error falls as the scale grows: bisected in its logarithm.
+    // The error decreases as the scale grows: bisect the logarithm of the scale.
     double low = -60, high = 60;
     for (int i = 0; i < 40; ++i) {
         const double middle = (low + high) / 2;

@@ -1,46 +1,48 @@
-// How many samples each part of a picture needs: the tiles that spread most take most. Found from the variances of a
-// picture that is then thrown away, so that what was found does not bias what counts.
+// Adaptive sampling: how many samples each tile needs; tiles with the most variance get the most. The variances come
+// from an image that is then discarded, so that the allotment does not bias the result.
 #pragma once
 #include "render/frame/frame.h"
 
 namespace tyndall {
 struct TileFactors;
 
-inline constexpr int max_tile_samples = 1 << 16; // of a pixel
+inline constexpr int max_tile_samples = 1 << 16; // per pixel
 
 struct Allotment {
-    ivec2 low{0};             // the first tile's place
-    Image<float> samples;     // of each pixel of a tile
-    double rays = 0;          // of all pixels, counted in those of the mean cost
-    double squared_error = 0; // to expect, as a share of the squared mean
-    double squared_bound = 0; // below which it is with a confidence of 99.5 %
-    double pixels = 0;        // that hold the error: as many of equal variance would spread it as much
+    ivec2 low{0};             // coordinates of the first tile, in tiles
+    Image<float> samples;     // per pixel of each tile
+    double rays = 0;          // over all pixels, in rays of mean cost
+    double squared_error = 0; // expected, relative to the squared mean
+    double squared_bound = 0; // upper bound with 99.5 % confidence
+    double pixels = 0;        // effective number of pixels that cause the error, as if of equal variance
 };
 
-// Least cost with no more error than both, or the best that so many rays of the mean cost give.
+// What to allot for: both error limits at the least cost, or, if that takes more, the least error with `rays` rays of
+// mean cost.
 struct Enough {
     double squared_error = 0, rays = 0, squared_bound = infinity;
 };
 
-// Where variances of means fall with the number of samples to the `power`, samples go as (variance / cost)^(1 /
-// (1 + power)) (Neyman 1934 for power 1), more where few pixels make most of the error, `least` or more of each pixel.
-// `layers` hold the variances of means of `taken` samples, and the work of one.
+// Allots samples in proportion to (variance / cost)^(1 / (1 + power)), where the variance of a mean of n samples falls
+// as n^-power (Neyman 1934 for power 1); more where few pixels cause most of the error, and at least `least` per pixel.
+// `layers` hold the variances of means of `taken` samples and the work per sample.
 Allotment allot(const Layers& layers, double taken, const Enough& enough, double power, int least);
 
-// Likewise, of so many samples of a pixel of each tile.
+// The same, with `taken` samples per pixel of each tile.
 Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& enough, double power, int least);
 
-// Samples of a pixel of each tile: as many in all; or in a picture of `scale` times as many as allotted, in multiples
-// of `unit`. Batches that go on from part to part stay as few in tiles of many samples.
+// Samples per pixel of each tile: the same number everywhere; or `scale` times the allotment, rounded up to multiples
+// of `unit`. Tiles with many samples are rounded up further, to hold more batches, unless batches continue from part to
+// part (`goes_on`).
 Image<float> samples_alike(const Layers& layers, double samples);
 Image<float> samples_in(const Allotment& allotment, double scale, int unit, bool goes_on);
 
-// What a picture of `to` times as many samples as allotted adds to one of `from` times as many: in multiples of `unit`,
-// one at least, but none where `from` is above 0 and rounding up has given them already.
+// What an image with `to` times the allotted samples adds to one with `from` times: in multiples of `unit`. At least
+// one, or none if `from` is above 0 and rounding up has already added them.
 struct AllottedPart {
     std::shared_ptr<const TileFactors> factors; // units added
-    std::shared_ptr<const TileFactors> before;  // samples that its batches go on after; null = they are new
-    TileShares shares;                          // of the two together
+    std::shared_ptr<const TileFactors> before;  // samples per batch that earlier parts took; null = the batches are new
+    TileShares shares;                          // of the total
 };
 AllottedPart part_of(const Allotment& allotment, double from, double to, int unit, bool goes_on);
 }

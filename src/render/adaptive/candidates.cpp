@@ -46,7 +46,7 @@ std::vector<Candidate> ladder_of(const Mode& mode, const Settings& settings) {
 }
 
 namespace {
-// Rows of a mode's ladder in which the settings are as their quality says.
+// Ladder rows that the settings leave at their quality's defaults.
 std::vector<std::string> free_rows(const Mode& mode, const Settings& settings, Quality quality) {
     const Settings usual = settings_for(quality);
     std::vector<std::string> names = ladder_rows(mode);

@@ -1,4 +1,5 @@
-// Ways for a mode to integrate the fog, from coarse to fine, and the truth they are held against.
+// Candidates: ways for a mode to integrate the fog, from coarse to fine, and the ground truth they are measured
+// against.
 #pragma once
 #include "modes/settings.h"
 
@@ -8,34 +9,34 @@ namespace tyndall {
 struct Mode;
 
 struct Candidate {
-    std::string name; // of its rung, without samples
+    std::string name; // of its rung, without pixel.samples
     Settings settings;
 };
 
-// At least six rungs for every mode. What decides how carefully a rung works is its own, pixel.samples among it;
-// everything else is as in `settings`.
+// A mode's quality ladder: at least six rungs for every mode. A rung sets the rows that control accuracy, including
+// pixel.samples; everything else is as in `settings`.
 std::vector<Candidate> ladder_of(const Mode& mode, const Settings& settings);
 
-// The rows that the rungs of a mode decide, but for pixel.samples.
+// The rows that a mode's rungs set, except pixel.samples.
 std::vector<std::string> ladder_rows(const Mode& mode);
 
 // Copies rows by name.
 void take_rows(std::span<const std::string> names, const Settings& from, Settings& to);
 
-// Candidates of a mode, cheapest first, made from a job's settings: what decides how finely fog is integrated is the
-// candidate's, except for rows in which the settings depart from their quality; everything else stays. A mode whose
-// error is noise has one, the settings as they are; a mode that is a look has none.
+// Candidates of a mode, cheapest first, based on a job's settings: each sets the rows that control how finely fog is
+// integrated, except those in which the settings differ from their quality's defaults. A mode whose only error is noise
+// has one candidate, the settings unchanged; an artistic mode has none.
 std::vector<Candidate> candidates_of(const Mode& mode, const Settings& settings, Quality quality);
 
-// Whether settings keep candidates from something they would decide: getting finer may then not help.
+// Whether the settings override rows that candidates would set; a finer candidate may then be no more accurate.
 bool binds_candidates(const Mode& mode, const Settings& settings, Quality quality);
 
-// The settings at which the march counts as free of error, for the same light.
+// Settings at which the main mode counts as ground truth, for the same light.
 Settings truth_of(const Settings& settings);
 
-// Whether a picture of the mode can be rendered to an error asked for: looks cannot.
+// Whether the mode can render to a target error: artistic modes cannot.
 bool error_can_be_told(const Mode& mode);
 
-// Whether the error has a part that no number of samples removes.
+// Whether the mode has an integration error (bias) that no number of samples removes.
 bool has_integrator(const Mode& mode);
 }

@@ -1,4 +1,4 @@
-// A candidate chosen for a picture, and how it is rendered to an error.
+// The candidate chosen for an image, and predictions of the work it takes to reach an error.
 #pragma once
 #include "render/adaptive/allotment.h"
 #include "render/adaptive/scout.h"
@@ -8,42 +8,42 @@ struct Choice {
     Candidate candidate;
     Measured measured;
     bool has_integrator = false;             // otherwise noise is the only error
-    bool is_truth = false;                   // the candidate is what pictures are held against
-    double power = 1;                        // of the samples by which their variance falls
-    double noise_ratio = 1;                  // its variance of one sample over that of the scout
-    double pace = 1;                         // time of the whole picture over what the pilot made expect
+    bool is_truth = false;                   // the candidate is itself the ground truth
+    double power = 1;                        // the variance of a mean of n samples falls as n^-power
+    double noise_ratio = 1;                  // variance of one sample, relative to the scout's
+    double pace = 1;                         // measured time of the whole image over the pilot's prediction
     std::shared_ptr<const Scout> scout = {}; // null = there was no time for one
-    std::shared_ptr<Pilot> pilot = {};       // the truth it was held against
+    std::shared_ptr<Pilot> pilot = {};       // the ground truth it was measured against
     double scout_variance = 0;               // of one sample of the scout, on the pilot's tiles
 
-    // How samples are best spread for an error or a number of rays; by the scout, which there must be.
+    // The best allotment for an error or a number of rays. Requires a scout.
     Allotment spread(const Enough& enough, int unit) const;
 
-    // To render as many samples as get to an error, were the integrator's squared one as large as that: by default its
-    // bound. Infinite where the error is out of reach.
+    // Work to reach an error if the integrator's squared error is `squared_integrator`, by default its bound. Infinite
+    // if the error is out of reach.
     double work_to(double error, double squared_integrator) const;
     double work_to(double error) const { return work_to(error, measured.integrator.bound); }
 
-    // How many times as many samples as have left so much noise get there.
+    // Factor by which the samples that left `noise` have to grow to reach the error.
     double times_to(double error, double squared_integrator, const Noise& noise) const;
 
-    // The squared error to expect of so many samples per pixel, on the average.
+    // Expected squared error with `samples` per pixel on average.
     double expected(double samples) const;
 };
 
-// Share of the error wanted that the integrator may use up.
+// Largest share of the target error that the integrator may take up.
 inline constexpr double integrator_share = 0.7;
 
-// Whether a mode's choice was made beside other modes, by what the first image of the main one shows.
+// Whether the choice comes from a contest between modes: another mode rendered its scout.
 bool has_rivals(const Choice& choice, const Mode& mode);
 
-// What a choice's integrator leaves of an error for noise; where it leaves nothing, noise need not be smaller than a
-// tenth of it.
+// Noise that may remain beside the integrator's error. If that alone exceeds the target: the larger of integrator_share
+// of the target and a tenth of the integrator's error.
 double noise_target(const Choice& choice, double error);
 
-// Whether what samples do not remove leaves enough of the error wanted for noise.
+// Whether the integrator's error leaves enough of the target error for noise.
 bool leaves_room(const Choice& choice, double error);
 
-// What a check of its integrator on a finished picture is likely to take (render/adaptive/goal.h: checked).
+// Predicted seconds to check the integrator on a finished image (render/adaptive/goal.h: checked).
 double check_seconds(const Choice& choice);
 }

@@ -9,8 +9,8 @@
 
 namespace tyndall {
 namespace {
-// Seen on scenes drawn by chance: the time that measuring the other modes takes, as a share of what the main one took
-// (the median), and how often a mode whose integrator leaves little room for noise misses the error.
+// Measured on random scenes: the median time to measure the other modes, relative to the main one's, and how often a
+// mode whose integrator leaves little room for noise misses the target error.
 constexpr double others_share = 0.25, chance_to_miss = 0.5;
 
 // A mode with candidates yet to measure.
@@ -18,28 +18,28 @@ struct Runner {
     const Mode* mode;
     std::vector<Candidate> candidates;
     size_t next = 0;
-    double seconds = 0;           // the last one took to be measured
-    double integrator = infinity; // the bound of its squared error
-    int idle = 0;                 // candidates since one was better than that before it
+    double seconds = 0;           // taken to measure the last candidate
+    double integrator = infinity; // bound of the last candidate's squared integrator error
+    int idle = 0;                 // consecutive candidates without a clear improvement
 
     void note(double error) { idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error; }
-    // How likely it is that the next one gets to an error: the less, the further off the last one is.
+    // Estimated probability that the next candidate reaches an error: the lower, the further the last one missed it.
     double chance(double error) const { return error > 0 ? std::min(error / std::sqrt(integrator), 1.0) : 1; }
 };
 
-// How much larger the squared noise of an image may be than it is on average: much where few pixels hold it.
+// Ratio of the bound of an image's squared noise to its expected value: large if few pixels cause the noise.
 double squared_chance(const Layers& layers) {
     const Noise noise = noise_of(layers);
     return noise.error > 0 && noise.error < infinity ? std::pow(noise.settled / noise.error, 2) : 1;
 }
 
-// Samples that bring the bound of the error to a goal's; infinite where too many would be needed.
+// Samples per pixel that bring the error bound down to `error`; infinite if that takes more than max_target_samples.
 double samples_for(const Contender& contender, double error) {
     const Choice& choice = contender.choice;
     const double chance = choice.scout ? squared_chance(choice.scout->layers) : 1;
     const double left = (error * error - contender.integrator().bound) / chance;
     if (!(left > 0) || (choice.has_integrator && !choice.scout)) return infinity;
-    // The first image tells where noise is, if it has any.
+    // Without a scout, or if it is free of noise, assume the same noise in all pixels.
     if (!choice.scout || choice.scout_variance == 0) {
         const double samples = std::ceil(choice.measured.sample.value / left);
         return samples <= max_target_samples ? std::max(samples, 1.0 * scout_samples) : infinity;
@@ -49,7 +49,7 @@ double samples_for(const Contender& contender, double error) {
     return spread.rays <= max_target_samples * pixels ? spread.rays / pixels : infinity;
 }
 
-// The picture a candidate would make of the goal. Where it does not get there, as good as it may become.
+// Predicts the image that a candidate renders for the goal; if it misses the goal, the best it can do.
 void predict(Contender& contender, const Goal& goal) {
     const Measured& m = contender.choice.measured;
     const auto seconds_of = [&](double samples) { return m.prepare_seconds + samples * m.sample_seconds; };
@@ -64,20 +64,20 @@ void predict(Contender& contender, const Goal& goal) {
     contender.samples = goal.error > 0 || contender.seconds > goal.seconds ? infinity : samples;
 }
 
-// Whether finer candidates of a mode than this can still win.
+// Whether a mode's finer candidates can still win.
 bool may_improve(const Contender& last, int idle, const Contender& best, const Goal& goal) {
-    constexpr int max_idle = 2; // reduced pictures may be as wrong as each other beside a lamp
+    constexpr int max_idle = 2; // at reduced resolution, two rungs may be equally wrong near a lamp
     const Measured& m = last.choice.measured;
     const double least = m.prepare_seconds + m.sample_seconds;
     if (!last.choice.has_integrator) return false;
     if (idle >= max_idle) return false;
     if (goal.error > 0 && best.gets_there() && least >= best.seconds) return false;
     if (goal.error > 0 && last.gets_there() && m.integrator.value < 0.25 * goal.error * goal.error) return false;
-    // Where noise rules, or time is nearly up, finer is worse.
+    // If noise dominates or time is nearly up, a finer candidate is worse.
     return !(goal.seconds > 0 && (least > 0.5 * goal.seconds || last.error * last.error > 4 * m.integrator.value));
 }
 
-// All modes but the main one, and those whose error is noise only where they are needed: they are never the quickest.
+// All modes but the main one. Modes whose only error is noise take part only if `noisy`: they are never the fastest.
 std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality, bool noisy) {
     std::vector<Runner> runners;
     for (const Mode& mode : modes)
@@ -87,7 +87,7 @@ std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& sett
     return runners;
 }
 
-// The winner alone keeps what it has prepared, which may be large.
+// Only the winner keeps its prepared data, which may be large.
 void add(Contender contender, const Goal& goal, Contest& contest) {
     const bool wins = contest.contenders.empty() || beats(contender, contest.best(), goal);
     if (!wins) contender.choice.measured.prepared = nullptr;
@@ -96,7 +96,7 @@ void add(Contender contender, const Goal& goal, Contest& contest) {
     if (wins) contest.winner = contest.contenders.size() - 1;
 }
 
-// A candidate of another mode, beside the main mode's choice, whose picture takes `main_seconds`.
+// Measures another mode's candidate on the main mode's pilot; the main mode's image takes `main_seconds`.
 Contender measured_beside(const Choice& main, double main_seconds, const Mode& mode, const Candidate& candidate,
                           const Goal& goal) {
     Contender contender{&mode,
@@ -135,7 +135,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     const double main_seconds = main.seconds, begun = goal.clock();
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : main_seconds);
     const bool too_costly = goal.seconds == 0 && main.gets_there() && allowed < others_share * (begun - start);
-    const bool same_light = max_component(snapshot.ambient) == 0; // path tracing shadows it, the truth does not
+    const bool same_light = max_component(snapshot.ambient) == 0; // path tracing shadows it, the ground truth does not
     const bool noisy = same_light && (share == infinity || !main.gets_there() || modes.size() == 1);
     if (std::ranges::count(modes, main.mode->name, &Mode::name)) add(std::move(main), goal, contest);
 
@@ -146,8 +146,9 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     while (!runners.empty()) {
         for (Runner& runner : runners) {
             const double before = goal.clock(), left = allowed - (before - begun);
-            // A finer one takes longer than the one before. First ones may take twice the time, so that one that takes
-            // most of it does not hide the others; where nothing is known of any mode, one is measured anyway.
+            // A finer candidate takes longer than the one before. A mode's first candidate may use up to twice the
+            // time, so that one slow mode does not keep the others from being measured; if no mode has been measured
+            // yet, the first one always is.
             const bool worth =
                 runner.next == 0 ? left + allowed > 0 : left * runner.chance(goal.error) > 3 * runner.seconds;
             if (!contest.contenders.empty() && !worth) {

@@ -11,14 +11,14 @@
 
 namespace tyndall {
 namespace {
-// Shares of the time that measuring may take.
+// Shares of the time limit that measuring may take.
 constexpr double truth_share = 0.1, measuring_share = 0.4, scout_share = 0.2;
-constexpr double truth_work_share = 0.2;  // of the picture's work, where no time is given
-constexpr double max_orders_share = 0.15; // of the seconds there are: to measure multiple scattering
-constexpr double max_doubt_share = 0.25;  // of the main mode's work: to look again at another mode's picture
-constexpr int truth_marches = 64;         // from so many nodes of a ray the truth marches to each light
+constexpr double truth_work_share = 0.2;  // of the image's work, without a time limit
+constexpr double max_orders_share = 0.15; // of the time limit, to measure multiple scattering
+constexpr double max_doubt_share = 0.25;  // of the main mode's work, to measure another mode's image further
+constexpr int truth_marches = 64;         // nodes along a ray from which the ground truth marches to each light
 
-// Whether a finer candidate is as wrong as the one before.
+// Whether a finer candidate is no more accurate than the one before.
 bool gains_nothing(const Choice& next, const Choice& before) {
     return next.measured.integrator.value > 0.9 * before.measured.integrator.value;
 }
@@ -28,15 +28,16 @@ bool reaches(const Choice& choice, double samples, double error) {
     return leaves_room(choice, error) && choice.measured.integrator.bound + noise <= error * error;
 }
 
-// Whether an error that may be larger than what it should be may turn out not to be, once more is seen of it.
+// Whether `wanted` lies within the uncertainty of a squared error: above its lower bound but below its upper one.
 bool is_undecided(const SquaredError& error, double wanted) {
     return error.bound > wanted && 2 * error.value - error.bound <= wanted;
 }
 
-// Whether seeing more of an integrator's error is likely to save some of `least`, the work of what follows otherwise.
-// Seeing as much again takes `again`; `to_goal` is the work that is left, by what the squared error turns out to be. By
-// noise the bound nears the value as fast as passes grow, since means over them multiply; by few tiles as a standard
-// error does. The value itself may turn out smaller: a look that could save many times its cost is worth taking.
+// Whether measuring an integrator's error further is likely to cost less than it saves of `least`, the work otherwise
+// needed. Repeating the measurement so far costs `again`; `to_goal` is the remaining work for a given squared error. If
+// the uncertainty is due to noise, bound - value falls as 1 / passes, since means over passes are multiplied; if it is
+// due to few tiles, it falls like a standard error. The value itself may turn out smaller: a measurement that could
+// save many times its cost is worthwhile.
 bool worth_seeing(const SquaredError& integrator, const Pilot& pilot, double least, double again,
                   const std::function<double(double)>& to_goal) {
     constexpr double much_more = 20;
@@ -57,7 +58,7 @@ bool same_settings(const Settings& a, const Settings& b) {
     return std::ranges::all_of(setting_rows(), [&](const SettingRow& row) { return row.get(a) == row.get(b); });
 }
 
-// All that choosing among the candidates of a mode needs.
+// Inputs for choosing among a mode's candidates.
 struct Chooser {
     const Mode& mode;
     const View& view;
@@ -69,20 +70,20 @@ struct Chooser {
     bool systematic = has_integrator(mode);
     Settings truth = systematic ? truth_of(goal.wanted ? *goal.wanted : settings) : settings;
 
-    // `work`: of the picture that it is for.
+    // `work`: of the image that the pilot is for.
     std::shared_ptr<Pilot> pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready,
                                  std::function<bool()> stop, double work) const {
         if (goal.seconds == 0) stop = {};
-        // Modes that leave something out may be wrong in few places: these get all the tiles of a drawing.
+        // Modes that omit effects may be wrong in only a few places: they get all the tiles of a drawing.
         if (goal.seconds > 0 || mode.name != main_mode().name) work = infinity;
-        Settings quick = truth; // and as exact on the average
+        Settings quick = truth; // with the same expected value
         quick.march.light_marches = truth_marches;
         return std::make_shared<Pilot>(make_pilot(systematic ? main_mode() : mode, view, snapshot,
                                                   systematic ? &quick : nullptr, std::move(chances), salt, options,
                                                   std::move(ready), std::move(stop), truth_work_share * work));
     }
 
-    // To get to the error with the candidate of the scout, were that right.
+    // Predicted work to reach the error with the scout's candidate if that had no integration error.
     double work_ahead(const Scout& scout) const {
         if (!(goal.error > 0)) return infinity;
         const Enough enough{goal.error * goal.error, infinity};
@@ -97,7 +98,7 @@ struct Chooser {
         return look;
     }
 
-    // What a candidate is worth; `before` is one measured already, which knows how noise falls.
+    // Measures a candidate. `before` is one already measured, if any: its variance power and pace are reused.
     Choice choice(const Candidate& candidate, Look& look, std::shared_ptr<Pilot> pilot, const Choice* before,
                   std::shared_ptr<const Scout> scout) const {
         const bool scouted = scout && scout->candidate.name == candidate.name;
@@ -115,8 +116,8 @@ struct Chooser {
     }
 };
 
-// Without a limit of time always; else where that leaves most of it. `sample` becomes the variance of one sample, where
-// that was measured to find out.
+// Renders a scout unless the mode's only error is noise or the scout would take too much of the time limit. `sample`
+// receives the variance of one sample if that decision required measuring it.
 std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start, SquaredError& sample) {
     const auto& [mode, view, snapshot, settings, goal, options, candidates, systematic, truth] = chooser;
     if (!systematic) return nullptr;
@@ -148,13 +149,13 @@ std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, con
     if (goal.seconds > 0) stop = [&] { return goal.clock() - start > max_orders_share * goal.seconds; };
     const OrdersError orders =
         goal.orders ? *goal.orders : orders_error(mode, view, snapshot, settings, goal.error, options, stop);
-    if (goal.error > 0) goal.error = error_beside(orders.pixels, goal.error).value_or(goal.error); // else it is missed
+    if (goal.error > 0) goal.error = error_beside(orders.pixels, goal.error).value_or(goal.error); // none = goal missed
     return orders;
 }
 
 namespace {
-// A candidate, what was seen of it, and the work to get to the error: as far as is sure, and if it is no more wrong
-// than it seems.
+// A candidate, its measurement, and the work to reach the error: by the bound of its integrator error (`sure`) and by
+// the estimate itself (`hoped`).
 struct Entry {
     const Candidate& candidate;
     Look look;
@@ -166,9 +167,9 @@ struct Entry {
     }
 };
 
-// The candidate with least work. The pilot grows as long as another one may save more than that costs, or none seems to
-// get there and too little was seen to tell; where it shows that none leaves room for noise, finer ones are measured
-// too.
+// The candidate with the least work. The pilot grows as long as another candidate may save more than that costs, or
+// none seems to reach the error and too little was measured to be certain; if it shows that none leaves room for noise,
+// finer candidates are measured too.
 Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilot,
                       const std::shared_ptr<const Scout>& scout) {
     const double error = chooser.goal.error;
@@ -202,7 +203,7 @@ Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilo
         const double least = best.sure;
         grow(*pilot, integrator.by_noise);
         for (Entry& entry : entries) {
-            if (entry.hoped > least) continue; // as long as the best is as good
+            if (entry.hoped > least) continue; // cannot win as long as the best candidate stays as good
             entry.choice = chooser.choice(entry.candidate, entry.look, pilot, &*before, scout);
             entry.weigh(error);
         }
@@ -214,13 +215,13 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
               double start, const FrameOptions& options) {
     const auto spent = [&] { return goal.clock() - start; };
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
-    SquaredError sample; // on more tiles than the truth may have time for
+    SquaredError sample; // measured on more tiles than there may be time for with the ground truth
     const std::shared_ptr<const Scout> scout = scout_for(chooser, start, sample);
     const double piloting = spent();
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
         scout ? chances_in(scout->layers) : even_chances(view, snapshot), 0, nullptr,
         [&] { return spent() - piloting > truth_share * goal.seconds; }, scout ? chooser.work_ahead(*scout) : infinity);
-    pilot->stop = {}; // it refers to this call
+    pilot->stop = {}; // it captures locals of this call
     if (goal.seconds == 0) return choose_by_work(chooser, pilot, scout);
 
     std::optional<Choice> best;
@@ -233,20 +234,20 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
         const auto samples = [&](const Choice& choice) {
             return std::max(1.0, std::floor((goal.seconds - now) / choice.measured.sample_seconds));
         };
-        if (best && samples(next) < 2 && samples(*best) >= 2) break; // one sample's noise shows in no pixel
+        if (best && samples(next) < 2 && samples(*best) >= 2) break; // one sample has no noise estimate
         if (goal.error > 0 && reaches(next, samples(next), goal.error)) return next;
         const double expected = next.expected(samples(next));
         const bool noisy = expected > 11 * next.measured.integrator.value;
         if (!best || expected < best->expected(samples(*best))) best = std::move(next);
-        // A finer one gains nothing where noise rules, and takes longer to prepare than this one did.
+        // A finer candidate gains nothing if noise dominates, and takes longer to prepare than this one did.
         if (noisy || now + 3 * (now - begun) > measuring_share * goal.seconds) break;
     }
     return std::move(*best);
 }
 
 namespace {
-// A finer candidate that begins anew, where that takes less work than `least`: of those up to the first that leaves
-// room for noise. Else the choice itself.
+// A finer candidate, if starting over with it takes less work than `least`, among those up to the first that leaves
+// room for noise; otherwise the choice itself.
 Choice finer_than(const Choice& choice, const Chooser& chooser, const std::shared_ptr<Pilot>& pilot, double least) {
     const double error = chooser.goal.error;
     Choice result = choice;
@@ -270,7 +271,8 @@ Choice checked(const Choice& choice, const CheckedPicture& picture, double until
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
     const bool rivals = has_rivals(choice, mode), is_bound = binds_candidates(mode, settings, goal.quality);
     const double squared_goal = goal.error * goal.error, squared_noise = picture.noise.bound * picture.noise.bound;
-    // Few samples tell little of what misses the goal anyway: all the tiles of a drawing say by how much.
+    // If the integrator alone misses the goal, measure by how much on all the tiles of a drawing, however few samples
+    // the image has.
     const bool hopeless = choice.measured.integrator.bound >= squared_goal;
     const auto chances = [&] {
         if (picture.layers.variance.empty()) return even_chances(view, snapshot);
@@ -279,7 +281,7 @@ Choice checked(const Choice& choice, const CheckedPicture& picture, double until
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
         chances(), salt, choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; },
         hopeless ? double{infinity} : picture.samples * choice.measured.sample_work);
-    pilot->stop = {}; // it refers to this call
+    pilot->stop = {}; // it captures locals of this call
     Choice result = choice;
     Look look{mode, choice.candidate.settings, choice.measured.prepared};
     SquaredError& integrator = result.measured.integrator;
@@ -291,8 +293,8 @@ Choice checked(const Choice& choice, const CheckedPicture& picture, double until
         const double all = work * choice.times_to(goal.error, squared_integrator, picture.noise);
         return std::max(all - picture.done * first.sample_work, 0.0);
     };
-    // More is seen in doubt where that takes less than what follows otherwise: more samples, a finer candidate of the
-    // main mode, which takes about as much as this one, or another mode's picture, of which it takes but a share.
+    // If in doubt, measure further as long as that takes less work than the alternatives: more samples, a finer
+    // candidate of the main mode (about the work of this one), or a share of the work of another mode's image.
     const auto see_more = [&] {
         const bool has_finer = mode.name == main_mode().name && !is_bound;
         double least = std::min(work_left(integrator.bound), max_doubt_share * goal.other_work);
@@ -311,7 +313,7 @@ Choice checked(const Choice& choice, const CheckedPicture& picture, double until
 
     const bool missed = integrator.bound + squared_noise > squared_goal;
     if (!missed || goal.error == 0 || goal.seconds > 0 || is_bound || !picture.may_begin_anew) return result;
-    if (rivals) return result; // the main mode is likely to be quicker than a finer one
+    if (rivals) return result; // the main mode is likely to be faster than a finer candidate
     return finer_than(result, chooser, pilot, std::min(work_left(integrator.bound), goal.other_work));
 }
 }

@@ -1,48 +1,48 @@
-// What a picture is rendered until, and which candidate gets there.
+// The goal of a rendering, a target error or a time limit, and the choice of a candidate that reaches it.
 #pragma once
 #include "render/adaptive/choice.h"
 
 namespace tyndall {
 struct Goal {
-    double error = 0;                       // as a share of the picture's mean; 0 = none is asked for
-    double seconds = 0;                     // to measure, prepare and render in; 0 = as many as it takes
-    Quality quality = Quality::preview;     // of the settings: rows that depart from it are kept
+    double error = 0;                       // target, relative to the image's mean; 0 = none
+    double seconds = 0;                     // time limit, including measuring and preparing; 0 = none
+    Quality quality = Quality::preview;     // of the settings; rows that differ from its defaults are kept
     Seconds clock{};                        // empty = steady_seconds
-    std::shared_ptr<const Choice> choice{}; // made for this very picture beforehand; null = none is
-    // What pictures are held against, where terms were left out because another frame did not need them, and rendered
-    // where that does not get to the error; null = the settings rendered.
+    std::shared_ptr<const Choice> choice{}; // already made for this image; null = not yet
+    // The settings before terms were dropped that another frame does not need: they define the ground truth, and are
+    // rendered if the error cannot be reached without those terms. Null = none were dropped.
     std::shared_ptr<const Settings> wanted{};
-    std::optional<OrdersError> orders{}; // measured for this very picture beforehand; none = it is not
-    double other_work = infinity;        // of another mode to the error, which follows where this one misses it
+    std::optional<OrdersError> orders{}; // already measured for this image; none = not yet
+    double other_work = infinity;        // of the mode that renders the image again if this one misses the error
 };
 
-// Of what a candidate rendered; each but the last may ask for a finer one.
+// Checks of a candidate's image; each but the last may switch to a finer candidate.
 inline constexpr uint32_t max_checks = 3;
 
-// A picture to check, or a pilot of one that is to come.
+// A finished image to check, or a pilot image of one still to be rendered.
 struct CheckedPicture {
-    const Layers& layers;       // show where errors may be
-    const Noise& noise;         // of the picture
-    double samples = 0;         // per pixel, for that noise
-    double done = 0;            // so far
-    bool may_begin_anew = true; // with a finer candidate
+    const Layers& layers;       // show where errors are likely
+    const Noise& noise;         // of the image
+    double samples = 0;         // per pixel, that give that noise
+    double done = 0;            // samples per pixel so far
+    bool may_begin_anew = true; // whether a finer candidate may start over
 };
 
-// How far light of several orders is off, where it is part of the image; the goal is left what that leaves of it.
+// Error of multiple scattering from a grid, if it is part of the image; reduces goal.error to what that leaves.
 std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, const Snapshot& snapshot,
                                          const Settings& settings, Goal& goal, const FrameOptions& options);
 
-// With an error asked for, the candidate that is likely to get there with least work, up to the first whose bound
-// leaves enough for noise; or the finest; what comes before the first that gains nothing, where set rows keep
-// candidates from getting finer. With seconds, the one whose picture will be best when they are over, `start` being
-// when they began; with both, the first that reaches the error in time. Seconds make the choice depend on the machine.
+// With a target error: the candidate that is likely to reach it with the least work, up to the first whose bound leaves
+// enough for noise; or the finest; if the settings keep candidates from getting finer, only those before the first that
+// gains nothing. With a time limit: the one whose image will be most accurate when the time is up, counted from
+// `start`; with both, the first that reaches the error in time. A time limit makes the choice depend on the machine.
 Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, const Goal& goal,
               double start, const FrameOptions& options);
 
-// What a finished picture's integrator leaves, on tiles that it says errors may be in, independent of those that the
-// candidate was chosen by. Where that and the picture's noise are too much for the goal, a finer candidate may take its
-// place: one that takes less work than more samples do. By the goal's clock, few tiles are looked at after `until`,
-// where the goal has seconds.
+// Measures the integrator's error of a finished image on tiles where the image shows that errors are likely,
+// independent of the tiles the candidate was chosen by. If that error and the image's noise together exceed the goal,
+// may return a finer candidate: one that takes less work than more samples would. With a time limit, few tiles are
+// measured after `until`, by the goal's clock.
 Choice checked(const Choice& choice, const CheckedPicture& picture, double until, const Mode& mode, const View& view,
                const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t salt,
                const FrameOptions& options);

@@ -18,35 +18,35 @@
 namespace tyndall {
 namespace {
 constexpr int tile_side = 8;
-constexpr size_t max_tiles = 256, few_tiles = 64, layer_count = 2; // layers: beauty, fog light
+constexpr size_t max_tiles = 256, few_tiles = 64, layer_count = 2; // layers: color, inscatter
 constexpr size_t first_passes = 4, few_passes = 16, max_passes = 64;
 constexpr uint32_t use_orders = 0x0d3e5u;
 
 double channel_mean(dvec3 value) { return (value.x + value.y + value.z) / 3; }
 
-// A tile of the image and those of its pixels that are looked at.
+// A tile of the image and its sampled pixels.
 struct SweptTile {
-    double weight = 0; // share of the pixels of all tiles looked at
-    double share = 1;  // of its own pixels that are looked at
+    double weight = 0; // share of the pixels of all sampled tiles
+    double share = 1;  // share of its pixels that are sampled
     size_t first = 0, count = 0;
 };
 
-// What one pass over the pixels gave: per pixel and layer the mode's light less path tracing's, and path tracing's
+// Result of one pass over the pixels: per pixel and layer the mode's light minus path tracing's, and path tracing's
 // mean.
 struct SweepPass {
     std::vector<std::array<vec3, layer_count>> differences;
     std::array<double, layer_count> truth{};
 };
 
-// Tiles of the image, or as many as are looked at, spread evenly; every pass follows rays through the same pixels.
+// All tiles of the image, or a stratified sample of them; every pass traces rays through the same pixels.
 struct Sweep {
     std::vector<SweptTile> tiles;
     std::vector<ivec2> pixels;
-    double share = 1; // of all tiles
+    double share = 1; // sampled share of all tiles
     std::vector<SweepPass> passes{};
 };
 
-// One pixel of each 2×2 of a tile, the same one in all of them, as far as they lie between `begin` and `end`.
+// One pixel of each 2×2 block of a tile, at the same place in each, clamped to `begin`..`end`.
 SweptTile sweep_tile(ivec2 corner, ivec2 begin, ivec2 end, uint32_t place, std::vector<ivec2>& pixels) {
     const ivec2 offset(static_cast<int>(place & 1), static_cast<int>(place >> 1 & 1));
     const ivec2 low = glm::max(corner, begin), high = glm::min(corner + tile_side, end);
@@ -66,7 +66,7 @@ Sweep make_sweep(const View& view, size_t most) {
     Sweep sweep{{}, {}, static_cast<double>(count) / static_cast<double>(all)};
     double pixels = 0;
     for (size_t i = 0; i < count; ++i) {
-        // One at random of each of `count` runs of tiles.
+        // One random tile from each of `count` strata.
         const uint32_t random = hash(view.seed, use_orders, static_cast<uint32_t>(i));
         const double at = static_cast<double>(i) + to_unit(random);
         const int tile = static_cast<int>(std::min(at / sweep.share * (1 - 1e-12), static_cast<double>(all - 1)));
@@ -78,7 +78,7 @@ Sweep make_sweep(const View& view, size_t most) {
     return sweep;
 }
 
-// A way to render, ready to be followed.
+// A mode with its settings and prepared data, ready to trace rays.
 struct Traced {
     const Mode& mode;
     Snapshot snapshot;
@@ -88,9 +88,9 @@ struct Traced {
     FrameTracer tracer(const View& view) const { return frame_tracer(mode, view, snapshot, settings, prepared); }
 };
 
-// A mode and path tracing, of as many orders as the mode's grid; and of both the light of lamps that scatters once.
-// With the same random numbers that is part of the former: what both find is taken out of their difference, and nearly
-// all of its noise in thin fog with it.
+// The mode, and path tracing with as many scattering orders as the mode's grid; and for both, single scattering from
+// lights alone. With the same random numbers that is part of the full result: subtracting it removes what both compute,
+// and in thin fog nearly all the noise of their difference.
 struct Compared {
     Traced mode, truth, mode_once, truth_once;
 };
@@ -126,7 +126,7 @@ void add_pass(const Compared& compared, const View& given, const FrameOptions& o
         const TileLight all = light_of(compared.truth, view, pixels),
                         once = light_of(compared.truth_once, view, pixels);
         for (size_t k = 0; k < tile.count; ++k) {
-            if (!own[k].finite || !own_once[k].finite || !all[k].finite || !once[k].finite) continue; // as if black
+            if (!own[k].finite || !own_once[k].finite || !all[k].finite || !once[k].finite) continue; // counts as black
             for (size_t layer = 0; layer < layer_count; ++layer) {
                 pass.differences[tile.first + k][layer] =
                     (own[k].values[layer] - own_once[k].values[layer]) - (all[k].values[layer] - once[k].values[layer]);
@@ -141,7 +141,7 @@ void add_pass(const Compared& compared, const View& given, const FrameOptions& o
     sweep.passes.push_back(std::move(pass));
 }
 
-// Of a layer, over passes.
+// Sums over passes, for one layer.
 struct DifferenceSums {
     std::vector<dvec3> sums, squares; // per pixel
     double truth = 0, passes = 0;
@@ -156,13 +156,13 @@ struct DifferenceSums {
 };
 
 struct Estimate {
-    double squared = 0, mean = 0; // of differences, as shares of the truth's mean squared, and of its mean
-    double variance = 0;          // of the former, by the pixels that were not looked at
+    double squared = 0, mean = 0; // of differences, relative to the ground truth's squared mean and to its mean
+    double variance = 0;          // of `squared`, due to the pixels that are not sampled
 };
 
-// Products of a pixel's differences in two passes have the square of the mode's error in it for their mean: averaged
-// over all pairs of passes, by their sum. The variance is that of sampling in two stages, tiles and pixels in them
-// (Cochran 1977, 10.3).
+// The product of a pixel's differences in two passes estimates the mode's squared error without bias: it is averaged
+// over all pairs of passes, computed from sums. The variance is that of two-stage sampling, of tiles and of pixels
+// within them (Cochran 1977, 10.3).
 Estimate estimate(const Sweep& sweep, const DifferenceSums& of) {
     const double truth = of.truth / of.passes;
     std::vector<double> squared; // per tile
@@ -188,15 +188,15 @@ Estimate estimate(const Sweep& sweep, const DifferenceSums& of) {
     return {squares * scale, sums / truth, ((1 - sweep.share) * between + sweep.share * within) * scale * scale};
 }
 
-// Of Student's (1908) distribution with so many degrees of freedom, below which 97.5 % lie; as of Fisher & Cornish
-// (1960), two terms.
+// 97.5 % quantile of Student's (1908) t distribution with `freedom` degrees of freedom: two terms of the expansion of
+// Fisher & Cornish (1960).
 double student(double freedom) {
     constexpr double z = 1.959964;
     return z + (z * z * z + z) / (4 * freedom) +
            (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
 }
 
-// The bound by what the estimate changes with each pass, were it left out (Tukey's jackknife).
+// The bound is from how the estimate changes when each pass in turn is left out (Tukey's jackknife).
 OrdersError error_of(const Sweep& sweep, size_t layer) {
     DifferenceSums sums{std::vector<dvec3>(sweep.pixels.size()), std::vector<dvec3>(sweep.pixels.size())};
     for (const SweepPass& pass : sweep.passes) sums.add(pass, layer, 1);
@@ -262,7 +262,7 @@ OrdersError orders_error(const Mode& mode, const View& given, const Snapshot& sn
 }
 
 std::optional<double> error_beside(const Noise& other, double error) {
-    constexpr double least = 0.3; // of the error: less takes more than ten times as many samples
+    constexpr double least = 0.3; // of the error: a smaller remainder takes more than ten times the samples
     const double left = error * error - other.bound * other.bound;
     if (left >= least * least * error * error) return std::sqrt(left);
     return {};

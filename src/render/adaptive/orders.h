@@ -1,20 +1,20 @@
-// How far multiple scattering from a grid (trace/fluence) is from path tracing: measured on pixels of the image before
+// Error of multiple scattering from a grid (trace/fluence) against path tracing, measured on pixels of the image before
 // it is rendered.
 #pragma once
 #include "modes/limitation.h"
 #include "render/frame/frame.h"
 
 namespace tyndall {
-// Whether light of several orders comes from a grid.
+// Whether multiple scattering comes from a grid.
 bool takes_fluence(const Mode& mode, const Settings& settings);
 
-// Both are followed through the same pixels until what differs is known to half its size, or to be small beside the
-// `error` asked for (0 = none is, and no more than a few rays are followed). `stop` says when time is up: then there
-// are few tiles, which a few rays are followed to in any case. The same bits at any thread count, unless stopped.
+// Traces both through the same pixels until their difference is known to half its size, or to be small relative to the
+// target `error` (0 = none: only a few rays are traced). `stop` returns true when time is up; with it, fewer tiles are
+// used, and a few rays are traced in any case. The same bits at any thread count, unless stopped.
 OrdersError orders_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                          double error, const FrameOptions& options, const std::function<bool()>& stop = {});
 
-// What an error asked for leaves to noise and integrator beside another part of it; none where that is too little.
+// What a target error leaves for noise and integrator beside another error; none if that is too little.
 std::optional<double> error_beside(const Noise& other, double error);
 
 namespace limitation {

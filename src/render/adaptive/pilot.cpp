@@ -14,7 +14,7 @@
 
 namespace tyndall {
 namespace {
-constexpr double confidence = 1.96; // standard deviations below which 97.5 % of a normal distribution lie
+constexpr double confidence = 1.96; // 97.5 % quantile of the normal distribution
 
 double channel_mean(dvec3 value) { return (value.x + value.y + value.z) / 3; }
 }
@@ -43,7 +43,7 @@ SquaredError squared_error(std::span<const Sums> sums, std::span<const DrawnTile
     if (largest == 0) return {};
     if (!(mean > 0)) return {infinity, infinity};
 
-    // The ratio's change with each tile, were it left out of the sums.
+    // Influence of each tile on the ratio, to first order.
     const double per_product = count / (mean * mean), value = products * per_product;
     double variance = 0, third = 0, noise = 0;
     for (size_t i = 0; i < sums.size(); ++i) {
@@ -51,7 +51,7 @@ SquaredError squared_error(std::span<const Sums> sums, std::span<const DrawnTile
         const double change = weight * (per_product * sums[i].products[product] - 2 * value * sums[i].mean / mean +
                                         value * sums[i].count / count);
         variance += (1 - chance) * change * change, third += (1 - chance) * change * change * change;
-        // A pixel may be off by as much as it says.
+        // A pixel's squared product stands for its variance.
         const double of_pixels = weight * weight * per_product * per_product * sums[i].squares[product];
         variance += chance * of_pixels, noise += of_pixels;
     }
@@ -65,7 +65,7 @@ constexpr size_t tiles_between_stops = 8;
 constexpr uint32_t use_pilot = 0x9170u;
 constexpr float quiet_nan = std::numeric_limits<float>::quiet_NaN();
 
-// Of a tile, those to follow: all, or one of each four.
+// The pixels of a tile to trace: all, or one of each 2×2 block.
 size_t pixels_of(const Pilot& pilot, const DrawnTile& tile, std::span<ivec2> pixels, std::span<size_t> places) {
     const uint32_t shift = hash(static_cast<uint32_t>(tile.corner.x), static_cast<uint32_t>(tile.corner.y), pilot.seed);
     size_t count = 0;
@@ -79,8 +79,8 @@ size_t pixels_of(const Pilot& pilot, const DrawnTile& tile, std::span<ivec2> pix
     return count;
 }
 
-// Colour and fog light of a tile's pixels, means of the first and of the second half of the samples; NaN where none is
-// followed or a sample is not finite. What that took.
+// Color and inscatter of a tile's pixels: means of the first and of the second half of the samples; NaN where a pixel
+// is not traced or a sample is not finite. Returns the work.
 double follow_tile(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<const size_t> places,
                    std::span<vec3> result) {
     std::ranges::fill(result, vec3(quiet_nan));
@@ -102,10 +102,10 @@ double follow_tile(const FrameTracer& tracer, std::span<const ivec2> pixels, std
     return work;
 }
 
-// One pass over the tiles `begin` to `end`, with random numbers of its own, blended into what earlier passes gave.
+// One pass over tiles `begin` to `end`, with its own random numbers, averaged into the results of earlier passes.
 Cost follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size_t end, std::vector<vec3>& result) {
     const double start = steady_seconds();
-    std::atomic<int64_t> work = 0; // whole numbers: sums of them do not depend on their order
+    std::atomic<int64_t> work = 0; // integers: their sum does not depend on the order
     View view = tracer.view;
     if (pass > 0) view.seed = hash(view.seed, static_cast<uint32_t>(pass));
     const FrameTracer own = tracer.with(view);
@@ -125,7 +125,7 @@ Cost follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size
     return {steady_seconds() - start, static_cast<double>(work)};
 }
 
-// The first tiles, in an order of chance, stand for all.
+// Keeps the first tiles, which are in random order, and lets them stand for all.
 void keep_first(size_t count, Pilot& pilot) {
     const double share = static_cast<double>(count) / static_cast<double>(pilot.tiles.size());
     pilot.tiles.resize(count);
@@ -147,7 +147,7 @@ void follow_first(const FrameTracer& tracer, Pilot& pilot) {
     if (done < pilot.tiles.size()) keep_first(done, pilot);
 }
 
-// All passes over all tiles, of which `seen` tiles have had `passes`.
+// Traces the passes that are missing: the first `seen` tiles have had `passes` of them, the others none.
 Cost follow_rest(const FrameTracer& tracer, const Pilot& pilot, size_t seen, int passes, std::vector<vec3>& result) {
     Cost cost;
     for (int pass = passes; pass < pilot.passes && seen > 0; ++pass)
@@ -161,7 +161,7 @@ std::span<const vec3> values_of(const std::vector<vec3>& all, size_t tile) {
     return {all.data() + tile * pilot_values, pilot_values};
 }
 
-// Modes that shade surfaces themselves spread their samples by the filter alone.
+// Modes that shade surfaces themselves place their samples by the filter alone.
 View view_for(const Mode& mode, const Pilot& pilot) {
     View view = pilot.view;
     if (mode.surfaces != Surfaces::shared) view.lamps.clear();
@@ -265,7 +265,7 @@ Measured measure(const Pilot& pilot, Look& look, const Seconds& clock) {
     Measured result;
     result.integrator = error_of(pilot, truth, look.values, of_integrator);
     result.sample = error_of(pilot, truth, look.values, of_sample);
-    result.sample.value *= pilot.passes, result.sample.bound *= pilot.passes; // of means of as many
+    result.sample.value *= pilot.passes, result.sample.bound *= pilot.passes; // they are those of means over the passes
     result.prepare_seconds = look.prepare_seconds, result.prepared = look.prepared;
     const double scale = pilot.pixels() / pilot.samples();
     result.sample_seconds = scale * look.cost.seconds, result.sample_work = scale * look.cost.work;

@@ -1,9 +1,9 @@
-// How far a way of integrating fog is from the truth, on a few tiles of a picture: both are followed through the same
-// surfaces to the same points of soft lights.
+// The error of a candidate, measured on a few tiles of an image: candidate and ground truth are traced through the same
+// surfaces to the same points on soft lights.
 //
-// With two independent samples of a pixel, the differences between candidate and truth multiply to the square of the
-// mean difference, on average: to what samples do not remove. Half the squared difference of the candidate's own
-// samples is the variance of one.
+// With two independent samples per pixel, the product of their differences between candidate and ground truth has the
+// squared mean difference as its expected value: the squared error that samples do not remove. Half the squared
+// difference of the candidate's two samples estimates the variance of one.
 #pragma once
 #include "base/clock.h"
 #include "render/adaptive/tile_chances.h"
@@ -15,98 +15,99 @@
 
 namespace tyndall {
 inline constexpr int max_drawings = 4, max_passes = 256;
-// Of a tile: for both samples, for each of its pixels, colour and fog light.
+// Per tile: color and inscatter of each of its pixels, for both samples.
 inline constexpr size_t pilot_values = 2 * 16 * 2;
 
 using Seconds = std::function<double()>; // a clock
 
-// Squared errors as shares of the squared mean of the truth: for colour or fog light, whichever is worse. The bound
-// holds with a confidence of 97.5 %.
+// A squared error relative to the ground truth's squared mean, for color or inscatter, whichever is worse. The bound
+// holds with 97.5 % confidence.
 struct SquaredError {
     double value = 0, bound = 0;
-    bool by_noise = false; // the bound is as large as it is for the noise of pixels rather than for few tiles
+    bool by_noise = false; // the bound is due to the noise of pixels rather than to few tiles
 };
 
 struct Measured {
-    SquaredError integrator;                        // of the mean of endless samples
+    SquaredError integrator;                        // in the limit of infinitely many samples
     SquaredError sample;                            // variance of one sample
-    double prepare_seconds = 0, sample_seconds = 0; // per sample of all the picture's pixels
+    double prepare_seconds = 0, sample_seconds = 0; // per sample of all the image's pixels
     double sample_work = 0;                         // likewise; see Cost
     std::shared_ptr<const Prepared> prepared;       // to render with
 };
 
-// What following pixels cost: in seconds, and in evaluations, which are the same on every machine and for any number of
-// threads. Choices that no limit of time asks for go by the latter.
+// Cost of tracing pixels, in seconds and in evaluations. The latter are the same on every machine and at any thread
+// count: choices without a time limit go by them.
 struct Cost {
     double seconds = 0, work = 0;
 
     Cost& operator+=(const Cost& other) { return seconds += other.seconds, work += other.work, *this; }
 };
 
-// Tiles of a picture, and what is known of the truth there: in all pixels of a tile that was drawn for certain, in a
-// quarter of those of others. It grows by drawings and by passes that are independent of each other.
+// Randomly drawn tiles of an image with ground-truth values: in all pixels of a tile that is certain to be drawn, in a
+// quarter of the pixels of others. Grows by independent drawings of tiles and independent passes.
 struct Pilot {
     const Mode* mode;
     const Snapshot* snapshot;
     std::atomic<bool>* cancel;
-    std::optional<Settings> truth_settings{}; // none: candidates are taken to be right on the average
-    View view{};                              // two samples per pixel, independent of each other
-    uint32_t seed = 0;                        // of the picture: modes are prepared with it
+    std::optional<Settings> truth_settings{}; // none = candidates count as unbiased
+    View view{};                              // two independent samples per pixel
+    uint32_t seed = 0;                        // the image's: modes are prepared with it
     TileChances chances{};
     std::vector<DrawnTile> tiles{};
-    int drawings = 0, passes = 1;               // passes: of two samples each
-    std::shared_ptr<const Prepared> prepared{}; // for the truth
-    std::vector<vec3> truth{};                  // pilot_values of each tile; empty = the candidate's
-    Cost cost{};                                // of following it
-    std::function<bool()> stop{};               // says when time is up; a few tiles are followed anyway
-    double enough_work = infinity;              // likewise, of the first drawing
+    int drawings = 0, passes = 1;               // a pass takes two samples per pixel
+    std::shared_ptr<const Prepared> prepared{}; // for the ground truth
+    std::vector<vec3> truth{};                  // pilot_values per tile; empty = the candidate's own
+    Cost cost{};                                // of tracing the ground truth
+    std::function<bool()> stop{};               // true when time is up; a few tiles are traced anyway
+    double enough_work = infinity;              // ends the first drawing likewise
 
-    double all() const { return static_cast<double>(chances.chances.size()); } // tiles of the picture
+    double all() const { return static_cast<double>(chances.chances.size()); } // tiles of the image
     bool is_full() const { return drawings >= max_drawings || static_cast<double>(tiles.size()) >= all(); }
     bool can_grow(bool by_noise) const { return by_noise ? passes < max_passes : !is_full(); }
-    double samples() const; // of pixels, that all passes together took
-    double pixels() const;  // of the picture
-    double truth_seconds() const { return cost.seconds / samples() * pixels(); } // per sample of the picture
+    double samples() const; // pixel samples traced by all passes together
+    double pixels() const;  // of the image
+    double truth_seconds() const { return cost.seconds / samples() * pixels(); } // per sample of all the image's pixels
 };
 
-// With one drawing; those of another `salt` are independent of it. `prepared` for the truth, where it is already.
+// A pilot with one drawing, independent of those with another `salt`. `prepared`: for the ground truth, if it exists
+// already.
 Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings* truth,
                  TileChances chances, uint32_t salt, const FrameOptions& options,
                  std::shared_ptr<const Prepared> prepared = {}, std::function<bool()> stop = {},
                  double enough_work = infinity);
 
-// Draws tiles once more and follows the truth there; or follows it as often again on those there are.
+// Draws more tiles and traces the ground truth there; or, `by_noise`, doubles the passes over the tiles drawn so far.
 void grow(Pilot& pilot, bool by_noise = false);
 
-// A candidate on the tiles of a pilot; grows with it.
+// A candidate's values on the tiles of a pilot; grows with it.
 struct Look {
     const Mode& mode;
     const Settings& settings;
     std::shared_ptr<const Prepared> prepared{};
     const Snapshot* snapshot = nullptr; // null = the pilot's
-    std::vector<vec3> values{};         // pilot_values of each tile seen
-    int passes = 0;                     // their number
+    std::vector<vec3> values{};         // pilot_values per tile traced
+    int passes = 0;                     // over those tiles
     double prepare_seconds = 0;
     Cost cost{};
 
     const Snapshot& of(const Pilot& pilot) const { return snapshot ? *snapshot : *pilot.snapshot; }
 };
 
-// With what is prepared already, where it is given. Follows the tiles not yet seen.
+// Measures a candidate: traces the tiles and passes it lacks, and prepares the mode unless that is done already.
 Measured measure(const Pilot& pilot, Look& look, const Seconds& clock);
 Measured measure(const Pilot& pilot, const Mode& mode, const Settings& settings, const Seconds& clock);
 
-// Samples of a pixel are spread better than independent ones: the variance of their mean falls as that of one, divided
-// by n to this power, 1 to 2. Measured on means of eight.
+// Exponent, 1 to 2, by which the variance of a pixel's mean falls with the number of samples: they are better
+// distributed than independent ones. Measured on means of eight.
 double spread_power(const Pilot& pilot, const Mode& mode, const Settings& settings, const Prepared& prepared);
 
 enum Product { of_integrator, of_sample, product_count };
 
-// Of values on the pilot's tiles: the worse of colour and fog light.
+// Squared error or variance from values on the pilot's tiles: the worse of color and inscatter.
 SquaredError error_of(const Pilot& pilot, const std::vector<vec3>& truth, const std::vector<vec3>& own,
                       Product product);
 
-// Of one layer: products of differences, as said above, summed over pixels.
+// Products of differences (see above) of one layer, summed over pixels.
 struct Sums {
     double products[product_count] = {};
     double squares[product_count] = {}; // of the pixels' products
@@ -118,11 +119,11 @@ struct Sums {
     }
 };
 
-// Of a tile. Pilot values of the truth and of a candidate; layer 0 = colour, 1 = fog light.
+// Sums over a tile of the ground truth's and a candidate's pilot values; layer 0 = color, 1 = inscatter.
 Sums sums_of(std::span<const vec3> truth, std::span<const vec3> own, size_t layer);
 
-// Over the squared mean, from tiles that each stand for several. The bound is that of a sum of equal lumps that come by
-// chance, as Wilson's (1927) for counts; with many lumps, a standard error (linearised ratio) times 1.96. A lump is the
-// third moment over the variance.
+// Squared error over the squared mean, from tiles that each stand for several. The bound is that of a sum of equal
+// lumps that occur at random, like Wilson's (1927) for counts; with many lumps, 1.96 standard errors (linearized
+// ratio). The size of a lump is the third moment over the variance.
 SquaredError squared_error(std::span<const Sums> sums, std::span<const DrawnTile> tiles, Product product);
 }

@@ -13,10 +13,10 @@
 
 namespace tyndall {
 namespace {
-constexpr int pilot_samples = 8;    // per pixel, each with random numbers of its own
-constexpr uint32_t image_check = 1; // the tiles of a finished image; those of checks beforehand follow it
+constexpr int pilot_samples = 8;    // per pixel, independent of each other
+constexpr uint32_t image_check = 1; // salt for the tiles of a finished image; those of earlier checks follow it
 constexpr int64_t max_shown_pixels = 1 << 21;
-constexpr uint32_t use_pilot = 0x9170u; // none of the frame's samples may be those that it was planned by
+constexpr uint32_t use_pilot = 0x9170u; // the frame's samples are independent of those it is planned from
 
 FrameOptions without_report(const FrameOptions& options) {
     FrameOptions result = options;
@@ -33,7 +33,7 @@ std::shared_ptr<const TileFactors> counts_of(const Allotment& allotment, int gro
     return counts;
 }
 
-// The frame's view with as many samples everywhere.
+// The frame's view with the same number of samples in all pixels.
 View even_frame(const View& view) {
     View even = even_view(view, 1, 1);
     even.leaves = 0, even.allotted = nullptr;
@@ -45,7 +45,7 @@ struct PilotImage {
     FrameStats stats;
 };
 
-// By the candidate, where there is one.
+// Rendered with the candidate, if there is one.
 PilotImage pilot_image(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                        const std::optional<Choice>& choice, const FrameOptions& options) {
     View even = even_view(even_frame(view), pilot_samples, pilot_samples);
@@ -66,7 +66,7 @@ void note_choice(const Choice& choice, PlannedSamples& planned) {
             {std::sqrt(error.value), std::sqrt(error.bound)}, choice.candidate.name, planned.settings};
 }
 
-// Of motion blur, where there is any; on tiles by what an image shows, if there is one.
+// Error of motion blur, if the frame has any; on tiles drawn by what an image shows, or evenly if it is empty.
 std::optional<Noise> moments_of_frame(const Mode& mode, const View& view, const Snapshot& snapshot,
                                       const Settings& settings, std::shared_ptr<const Prepared> prepared,
                                       const Layers& image, double error, const FrameOptions& options) {
@@ -103,7 +103,7 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
         moments_of_frame(mode, view, snapshot, choice ? choice->candidate.settings : settings,
                          choice ? choice->measured.prepared : nullptr, pilot.layers, goal.error, options);
     if (planned.error.moments)
-        goal.error = error_beside(*planned.error.moments, goal.error).value_or(goal.error); // else it is missed
+        goal.error = error_beside(*planned.error.moments, goal.error).value_or(goal.error); // none = goal missed
     for (uint32_t check = 1; choice && check <= max_checks; ++check) {
         const double bound = noise_target(*choice, goal.error), work = choice->work_to(goal.error);
         const Noise noise{bound, bound, bound};
@@ -120,7 +120,7 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
     const Layers& layers = pilot.layers;
     const FrameStats& stats = pilot.stats;
 
-    // Noise falls fastest at first: half of the way as the choice says, half as 1 / n.
+    // Noise falls fastest at first: use the measured power for half of the way and 1 / n for the rest.
     const double power = choice ? (1 + std::clamp(choice->power, 1.0, 1.5)) / 2 : 1;
     const double pixels = static_cast<double>(layers.color.pixels.size());
     const Enough enough{infinity, max_target_samples * pixels, target * target / 1.05};
@@ -131,7 +131,7 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
 }
 
 namespace {
-// On tiles where an image shows that there may be some; no finer candidate is looked for.
+// Integrator error on tiles where an image shows that it is likely; does not look for a finer candidate.
 Integrator measured_integrator(const Choice& choice, double target, const Mode& mode, const View& view,
                                const Snapshot& snapshot, const Layers& image, const Noise& noise, double samples,
                                uint32_t salt, const FrameOptions& options) {
@@ -162,7 +162,7 @@ PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& sn
         error.moments = moments_of_frame(mode, view, snapshot, settings, nullptr, {}, 0, options);
         return error;
     }
-    Layers image; // which shows where errors may be; where it would take long, tiles are drawn without
+    Layers image; // shows where errors are likely; if it would take long to render, tiles are drawn evenly
     if (static_cast<int64_t>(view.size.x) * view.size.y <= max_shown_pixels) {
         View few = even_view(even_frame(view), scout_samples, scout_samples);
         few.seed = hash(view.seed, use_pilot);

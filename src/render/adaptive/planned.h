@@ -1,5 +1,5 @@
-// Samples settled before a frame is rendered, so that whoever renders a part of it takes the same; and how good the
-// frame is once it is there.
+// Sample counts fixed before a frame is rendered, so that every machine that renders a part of it takes the same; and
+// the error of the finished frame.
 #pragma once
 #include "render/adaptive/goal.h"
 #include "render/adaptive/planned_error.h"
@@ -7,27 +7,27 @@
 namespace tyndall {
 struct PlannedSamples {
     Settings settings;                         // of the candidate
-    std::shared_ptr<const TileFactors> counts; // of samples of every tile, in multiples of the groups
+    std::shared_ptr<const TileFactors> counts; // samples per pixel of each tile, divided by the groups
     PlannedError error;
-    double samples = 0; // per pixel, on the average
-    double seconds = 0; // one run is likely to take here
+    double samples = 0; // per pixel, on average
+    double seconds = 0; // predicted for a single run on this machine
 };
 
-// From a pilot of eight samples per pixel that is thrown away: the bound of the error is likely to be at most
-// goal.error, which is above 0. `view` is the frame's, with as many batches as groups are wanted.
+// Plans from an image of eight samples per pixel, which is then discarded; the error bound is likely to be at most
+// goal.error, which must be above 0. `view` is the frame's, with one batch per group.
 PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                             const Goal& goal, const FrameOptions& options);
 
-// What samples do not remove of a frame's error, by settings that no target has chosen.
+// The error of a frame that samples do not remove, for settings that were not chosen by a target.
 PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                           const FrameOptions& options);
 
-// Adds to the statistics of a finished image what is known of its error besides noise. Where a target was asked for,
-// the integrator's is measured again, on tiles on which the image itself shows that there may be some; independent of
-// what the candidate was chosen by, and the same for the same image.
+// Adds to the statistics of a finished image what is known of its error besides noise. With a target error, the
+// integrator's is measured again, on tiles where the image shows that errors are likely; independent of what the
+// candidate was chosen by, and the same for the same image.
 void judge_planned(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
                    const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats);
 
-// How many groups are lacking to a target; none where it is reached, infinite where groups cannot reach it.
+// How many more groups a target needs; 0 if it is reached, infinite if groups cannot reach it.
 double groups_lacking(const PlannedError& planned, const FrameStats& stats, int groups);
 }

@@ -1,5 +1,5 @@
-// A first picture, quick and coarse: it shows where noise and light are, for the tiles to look at and the samples to
-// take. Where the candidate it was made with is the one chosen, it counts.
+// A quick, coarse first image: it shows where noise and light are, to draw tiles and allot samples. It counts towards
+// the result if the candidate it was rendered with is the one chosen.
 #pragma once
 #include "render/adaptive/candidates.h"
 #include "render/adaptive/pilot.h"
@@ -14,16 +14,16 @@ struct Scout {
     Layers layers;
     FrameStats stats;
     std::shared_ptr<const Prepared> prepared;
-    double prepare_seconds = 0, seconds = 0; // the latter without preparing
+    double prepare_seconds = 0, seconds = 0; // the latter without preparation
 
     double work() const { return ray_work * static_cast<double>(stats.camera_rays) + static_cast<double>(stats.steps); }
 };
 
-// `prepared` for that candidate, where it is already.
+// `prepared`: for that candidate, if it exists already.
 std::shared_ptr<const Scout> make_scout(const Mode& mode, const View& view, const Snapshot& snapshot,
                                         const Candidate& candidate, const FrameOptions& options, const Seconds& clock,
                                         std::shared_ptr<const Prepared> prepared = {});
 
-// The view of a picture that is measured: lamps and edges take no more samples than other pixels.
+// The view with the same number of samples in all pixels, also around lamps and at edges.
 View even_view(View view, int samples, int batches);
 }

@@ -9,9 +9,9 @@
 
 namespace tyndall {
 namespace {
-constexpr uint32_t moments_salt = 0x5b17u; // tiles of their own
+constexpr uint32_t moments_salt = 0x5b17u; // independent tiles
 
-// A mode as it is set, and what it showed of each moment so far.
+// A mode's values at each moment so far.
 struct Moments {
     const View& view;
     const Snapshot& snapshot;
@@ -28,7 +28,7 @@ Moments looks_at(const Mode& mode, const View& view, const Snapshot& snapshot, c
     return moments;
 }
 
-// Follows the tiles not yet seen.
+// Traces the tiles and passes that a moment's look lacks.
 void follow(const Pilot& pilot, size_t moment, Look& look, const View& view) {
     Pilot still = pilot;
     still.view.camera = view.shutter->cameras[moment], still.view.shutter = nullptr;
@@ -49,7 +49,7 @@ SquaredError compare(const Pilot& pilot, Moments& moments) {
         }
     }
     for (size_t i = 0; i < values; ++i)
-        difference[i] += mean[i] * (1 - sum_of_signs / static_cast<float>(count)); // becomes the other blur
+        difference[i] += mean[i] * (1 - sum_of_signs / static_cast<float>(count)); // mean plus signed difference
     return error_of(pilot, mean, difference, of_integrator);
 }
 }
@@ -57,9 +57,9 @@ SquaredError compare(const Pilot& pilot, Moments& moments) {
 SquaredError moments_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                            const Prepared& prepared, const TileChances& chances, double error, bool once,
                            const FrameOptions& options) {
-    constexpr double small = 0.15;     // beside the error asked for: it takes a hundredth of its square
-    constexpr size_t few_moments = 32; // more of them leave little, and every tile is followed through all
-    constexpr int many_passes = 8;     // of which each follows every moment
+    constexpr double small = 0.15;     // relative to the target error: at most 2 % of its square
+    constexpr size_t few_moments = 32; // with more, the error is small and every tile is traced through all of them
+    constexpr int many_passes = 8;     // each of them traces every moment
     Pilot pilot = make_pilot(mode, view, snapshot, nullptr, chances, moments_salt, options);
     Moments moments = looks_at(mode, view, snapshot, settings, prepared);
     while (true) {

@@ -1,14 +1,14 @@
-// How far motion blur of a frame's moments is from that of all the time the shutter is open: no number of samples
-// removes it.
+// Error of motion blur from a frame's moments (time samples) against that of a continuously open shutter: no number of
+// samples removes it.
 #pragma once
 #include "render/adaptive/pilot.h"
 
 namespace tyndall {
-// By pixels of tiles that are drawn, each followed through all moments along the same rays. What half of the moments
-// show is set against what the other half does, chosen so that what changes evenly cancels (Prouhet 1851, Thue 1906,
-// Morse 1921). Of something that is seen in one moment alone that is the error; of an edge that passes once it is 2.4
-// times as much, on the average. More tiles are drawn until that is known well beside the `error` asked for (0 = none
-// is), or for one drawing `once` or where there are many moments. The snapshot has moments, and `prepared` is for them.
+// Traces pixels of randomly drawn tiles through all moments along the same rays, and compares one half of the moments
+// with the other, divided so that smooth changes cancel (Prouhet 1851, Thue 1906, Morse 1921). For something visible at
+// a single moment the difference is the error; for an edge that passes once it is 2.4 times the error on average. Draws
+// more tiles until the error is well known relative to the target `error` (0 = none); only one drawing if `once` or if
+// there are many moments. The snapshot must have moments, and `prepared` must be for them.
 SquaredError moments_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                            const Prepared& prepared, const TileChances& chances, double error, bool once,
                            const FrameOptions& options);

@@ -7,12 +7,12 @@
 
 namespace tyndall {
 namespace {
-// Of a pixel in a first round: who needs more than sixteen times as many has pixels that spread far more than others,
-// which show by then.
+// Most samples per pixel in a first round: an image that needs more than sixteen times as many has pixels with far more
+// variance than others, which show by then.
 constexpr double max_first_samples = 64;
 
-// All the samples a pixel will have taken, going by the noise after `samples`: variance falls with their number. A
-// fiftieth more, so that the bound is met at the first try more often than not.
+// Total samples per pixel to reach `target`, given the noise after `samples`: variance falls as 1 / n. A fiftieth more,
+// so that the bound is usually met at the first try.
 int samples_needed(const Noise& noise, int samples, double target, int batches) {
     const double ratio = noise.bound / target, needed = 1.02 * samples * ratio * ratio;
     if (!(needed < max_target_samples)) return max_target_samples;
@@ -42,7 +42,7 @@ int first_round(TargetRounds& rounds) {
         rounds.expected = std::max<double>(samples, std::min<double>(needed, max_target_samples));
     }
     if (rounds.goal.seconds > 0) {
-        // Two samples show where an image spreads, which counts for more than a check of the integrator.
+        // Two samples show where an image has variance, which is worth more than a check of the integrator.
         if (rounds.left() < 2 * rounds.work_seconds) rounds.check_seconds = 0;
         const double time = std::floor(std::min(rounds.left() / rounds.work_seconds, 0.0 + max_target_samples));
         samples = std::min(samples, static_cast<int>(std::max(time > 32 ? time / 8 : time > 4 ? time / 2 : time, 1.0)));
@@ -52,9 +52,9 @@ int first_round(TargetRounds& rounds) {
 }
 
 namespace {
-// Work that going on takes until the picture is as good as that of an allotment.
+// Work to make the image as accurate as an allotment would, by continuing as before.
 double work_as_it_goes(const TargetRounds& rounds, const Allotment& allotment, const Noise& noise) {
-    // By the bound, where the goal can be reached: what an allotment missed few batches tell of.
+    // An allotment has few batches: what it missed shows in the bound, so compare bounds if the goal is within reach.
     const double target = rounds.noise_target() * rounds.noise_target();
     const auto more = [&](double ratio) { return rounds.done * (std::pow(ratio, 1 / rounds.power_of_parts()) - 1); };
     if (rounds.allotment && allotment.squared_bound <= target) return more(noise.bound * noise.bound / target);
@@ -74,12 +74,13 @@ bool begin_allotment(TargetRounds& rounds, const Layers& layers, FrameStats& sta
     const Image<float> taken = rounds.samples_taken(layers);
     const Allotment allotment = allot(layers, taken, enough, rounds.power(), rounds.unit());
 
-    // As good by going on, without beginning anew: in rounds that know nothing of each other.
+    // Work for the same result by continuing with independent rounds instead of starting over.
     const double as_it_goes = work_as_it_goes(rounds, allotment, noise) * unit_rays;
     const double gain = rounds.allotment ? 2 : 1.2;
     if (!(gain * allotment.rays < as_it_goes) || allotment.rays > 1.1 * enough.rays) return false;
     rounds.work_seconds = ray_seconds * allotment.rays;
-    // Noise may fall faster than told from few samples: where many more are to come, some of them show it.
+    // Noise may fall faster than few samples suggest: if many more are to come, render a part of them first to find
+    // out.
     double growth = 0;
     for (size_t i = 0; i < taken.pixels.size(); ++i)
         growth = std::max(growth, double{allotment.samples.pixels[i]} / taken.pixels[i]);
@@ -89,7 +90,7 @@ bool begin_allotment(TargetRounds& rounds, const Layers& layers, FrameStats& sta
 }
 
 namespace {
-// Parts of an allotment: what noise asks for, and time leaves; 0 when time is up.
+// The next part of an allotment: what the noise requires and the time allows; 0 when time is up.
 double next_part(TargetRounds& rounds, const FrameStats& stats) {
     double wanted = rounds.goal.error > 0 ? rounds.first_part : 1;
     if (rounds.done > 0 && rounds.goal.error > 0) {
@@ -98,7 +99,7 @@ double next_part(TargetRounds& rounds, const FrameStats& stats) {
         wanted = std::clamp(rounds.expected - rounds.done, 0.125 * rounds.done, rounds.done);
     }
     if (rounds.goal.seconds > 0) {
-        // Tiles that take most samples may cost more than others: the first part shows it.
+        // Tiles with the most samples may also cost more per sample: leave a margin until the first part shows it.
         const double safe = rounds.done > 0 ? 0.9 : 0.5;
         wanted = std::min(wanted, safe * rounds.left() / rounds.work_seconds);
         if (wanted < 0.1 * std::max(rounds.done, 0.5) && rounds.done > 0) return 0;
@@ -127,8 +128,8 @@ double next_round(TargetRounds& rounds, const FrameStats& stats) {
 }
 
 namespace {
-// Of an image of one sample per pixel: by what was measured on tiles beforehand, which few bright pixels escape, and by
-// how far neighbours are apart.
+// Noise of an image with one sample per pixel: the larger of what was measured on tiles beforehand, which may miss a
+// few bright pixels, and an estimate from differences between neighbors.
 Noise single_noise(const Choice& choice, const Layers& image) {
     const SquaredError& sample = choice.measured.sample;
     const Noise seen = noise_by_neighbours(image);

@@ -1,6 +1,6 @@
-// How much work comes next on the way to a picture that is as right as wanted. First all pixels take equally many
-// samples; where that shows that some need many more than others, the picture is begun anew with as many as each needs,
-// and once more where that shows what was missed.
+// How much work comes next on the way to an image with a given error. At first all pixels take the same number of
+// samples; if that shows that some need many more than others, the image starts over with as many as each needs, and
+// once more if that shows what was missed.
 #pragma once
 #include "base/random.h"
 #include "modes/mode.h"
@@ -9,30 +9,30 @@
 #include "render/adaptive/to_target.h"
 
 namespace tyndall {
-double pixel_count(const View& view); // of what is rendered of it
+double pixel_count(const View& view); // in the crop window
 
-// The rounds of one picture. Work is counted in samples of all pixels; then in allotments.
+// The rounds of one image. Work is counted in samples per pixel; after an allotment, in multiples of it.
 struct TargetRounds {
     const Mode& mode;
-    View view; // as asked for; what spreads most is measured, not guessed from lamps and edges
+    View view; // as requested; samples go where variance is measured, not by rule to lamps and edges
     Goal& goal;
-    double start = 0;             // of the goal's time
-    std::optional<Choice> choice; // where anything was measured beforehand
+    double start = 0;             // when the goal's time began
+    std::optional<Choice> choice; // if anything was measured beforehand
     std::optional<Allotment> allotment{};
-    double work_seconds = 0; // of a unit of work: by the last round, or by what was measured
-    double first_part = 1;   // of an allotment
+    double work_seconds = 0; // per unit of work: from the last round, or as measured beforehand
+    double first_part = 1;   // share of an allotment to render first
     double done = 0, expected = max_target_samples;
-    int freedom = 0;          // differences between batches so far
-    int sequence = 0;         // the round that an allotment began with, whose sequences its parts may go on in
-    double check_seconds = 0; // that the check of the picture will take
+    int freedom = 0;          // degrees of freedom of the noise estimate so far
+    int sequence = 0;         // round that an allotment began with: its parts may continue the sequences of that round
+    double check_seconds = 0; // predicted for the check of the image
 
     double left() const { return goal.seconds - check_seconds - (goal.clock() - start); }
     int max_batches() const { return error_is_noise(mode) || view.batches > 1 ? noise_batches : 2; }
     int fewest() const { return view.batches > 1 ? 2 : 1; }
-    // Samples that are allotted at once.
+    // Samples are allotted in multiples of this number.
     int unit() const { return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2; }
-    // Parts of an allotment go on in the same two batches, which noise falls fastest in, where many pixels together
-    // tell how far these are apart.
+    // Whether parts of an allotment continue the same two batches, in which noise falls fastest: only if many pixels
+    // together show the noise from the difference of two.
     bool goes_on() const {
         constexpr double many_pixels = 256;
         return allotment && view.batches == 1 && !error_is_noise(mode) && allotment->pixels >= many_pixels;
@@ -46,7 +46,8 @@ struct TargetRounds {
 
     double noise_target() const { return choice ? tyndall::noise_target(*choice, goal.error) : goal.error; }
 
-    // The view of so much work, and the work it is. What is allotted may come in parts.
+    // The view of a round of `work`, which is rounded to whole samples; `part` is the part of an allotment to render,
+    // if any.
     View round_view(double& work, int round, const AllottedPart* part) const {
         View result = view;
         const int numbers = part && part->before ? sequence : round;
@@ -61,29 +62,28 @@ struct TargetRounds {
     }
 };
 
-// Whether the integrator alone may be as wrong as is allowed.
+// Whether the integrator's error bound alone reaches the target.
 bool is_out_of_reach(const Choice& choice, double error);
 
-// Samples of the first round. Where nothing is known, as the view asks; otherwise a small part of what is likely to be
-// needed: it shows which pixels need it.
+// Samples per pixel of the first round: the view's if nothing was measured; otherwise a small part of what is likely to
+// be needed, which shows which pixels need it.
 int first_round(TargetRounds& rounds);
 
-// Begins with what the scout shows, which counts where it is by the candidate chosen. The work that comes next; 0 when
-// it is enough.
+// Begins with the scout, which counts towards the result if it is of the chosen candidate. Returns the next work; 0 if
+// the scout is enough.
 double begin_with_scout(TargetRounds& rounds, Layers& result, FrameStats& stats);
 
-// Whether samples are better spread by what the rounds so far showed. Then they are, from nothing.
+// Starts over with a new allotment if the rounds so far show that it saves work; returns whether it does.
 bool begin_allotment(TargetRounds& rounds, const Layers& layers, FrameStats& stats);
 
-// Rounds stay large enough for a few to do, and no round wastes more than all before it; 0 when time is up.
+// Work of the next round: large enough that few rounds suffice, but no more than all before it; 0 when time is up.
 double next_round(TargetRounds& rounds, const FrameStats& stats);
 
-// Sets what is known of the error after each round; true when it is small enough, or as small as the integrator lets it
-// become.
+// Updates the error statistics after a round; true if the error is small enough, or as small as the integrator allows.
 bool judge(TargetRounds& rounds, const Layers& result, FrameStats& stats);
 
-// What a goal is likely to take from here, when so much work comes next: an allotment may be enough after its first
-// part, or be begun anew. Noise falls fastest at first: the power measured there holds for about half of the way, in
-// logarithms, and the rest falls as 1 / n. The rounds must have a choice.
+// Predicted seconds to the goal if `next` is the next work: an allotment may be enough after its first part, or be
+// started over. Noise falls fastest at first: the power measured there holds for about half of the way (in logarithms),
+// and the rest falls as 1 / n. The rounds must have a choice.
 double seconds_ahead(const TargetRounds& rounds, double next);
 }

@@ -23,7 +23,7 @@ ivec2 corner_of(const TileChances& tiles, int tile) {
 
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
 
-// Adds `share`, spread over tiles as a function of pixels is; evenly where that is 0 everywhere.
+// Distributes `share` over tiles in proportion to a function of pixels; evenly if that is 0 everywhere.
 template<class Function> void add_share(const Layers& picture, double share, const Function& at, TileChances& tiles) {
     std::vector<double> sums(tiles.chances.size(), 0.0);
     double all = 0;
@@ -38,7 +38,7 @@ template<class Function> void add_share(const Layers& picture, double share, con
     for (size_t i = 0; i < sums.size(); ++i) tiles.chances[i] += spread ? share * sums[i] / all : even;
 }
 
-// Those within two pixels of a lamp in view.
+// Tiles within two pixels of a visible lamp.
 std::vector<size_t> tiles_with_lamps(const TileChances& tiles, const View& view, const Snapshot& snapshot) {
     constexpr float reach = 2; // pixels
     std::vector<size_t> result;
@@ -106,7 +106,8 @@ std::vector<DrawnTile> draw_tiles(const TileChances& tiles, size_t count, uint32
         for (size_t i = 0; i < all; ++i) drawn.push_back({corner(i)});
         return drawn;
     }
-    // One mark in each of `count` even parts of the chances; a tile is drawn when a mark falls into its part.
+    // Evenly spaced marks, randomly shifted, on the cumulative chances; a tile is drawn if a mark falls into its
+    // interval.
     const double shift = to_unit(hash(seed, use_tiles));
     double sum = 0;
     for (size_t i = 0; i < all; ++i) {

@@ -1,4 +1,4 @@
-// Where in a picture its error may be: how likely each tile of 4×4 pixels is to be looked at.
+// Where an image's error may be: the probability of drawing each tile of 4×4 pixels.
 #pragma once
 #include "render/frame/layers.h"
 
@@ -6,32 +6,33 @@ namespace tyndall {
 struct Snapshot;
 struct View;
 
-inline constexpr size_t drawing_tiles = 32; // drawn at once
+inline constexpr size_t drawing_tiles = 32; // per drawing
 
 struct TileChances {
-    ivec2 low{0}, size{0};       // of the tiles, in tiles of the full picture
+    ivec2 low{0}, size{0};       // in tiles of the full image
     std::vector<double> chances; // row by row; their sum is 1
 };
 
-// A tile that was drawn, and how many tiles of the picture it stands for: in one drawing, one divided by how likely it
-// was to be drawn (Horvitz & Thompson 1952).
+// A drawn tile and how many tiles of the image it stands for: in one drawing, the reciprocal of its probability of
+// being drawn (Horvitz & Thompson 1952).
 struct DrawnTile {
     ivec2 corner{0}; // pixels
     double chance = 1, stands_for = 1;
 };
 
-// All alike, but those with lamps in view, where noise is largest, are drawn for certain: up to half of a drawing.
+// Equal chances, except that tiles with visible lamps, where noise is largest, are certain to be drawn: up to half of a
+// drawing.
 TileChances even_chances(const View& view, const Snapshot& snapshot);
 
-// By what a picture shows: a quarter for each of noise, light of surfaces, light of fog, and all alike. Errors of an
-// integrator are shares of the light, so their squares go with its square.
+// Chances from what an image shows: a quarter each for noise, squared color, squared inscatter, and equal chances. An
+// integrator's errors are proportional to the light, so their squares are proportional to its square.
 TileChances chances_in(const Layers& picture);
 
-// The same, and a quarter by where its fog light differs from that of another technique's picture of the same pixels:
-// what one of them leaves out may be in few tiles. Tiles even out the noise.
+// The same, with a quarter for squared differences in inscatter from another technique's image of the same pixels: what
+// one of them omits may show in few tiles. Differences are summed over a tile to average out noise.
 TileChances chances_between(const Layers& picture, const Layers& other);
 
-// `count` tiles, or all there are, spread evenly over the chances (systematic sampling); tiles likely enough are drawn
-// for certain.
+// Draws `count` tiles, or all if there are fewer, by systematic sampling; tiles with high enough chances are certain to
+// be drawn.
 std::vector<DrawnTile> draw_tiles(const TileChances& chances, size_t count, uint32_t seed);
 }

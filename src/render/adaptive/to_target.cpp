@@ -12,9 +12,9 @@
 
 namespace tyndall {
 namespace {
-constexpr double max_check_share = 0.2; // of the seconds there are
-constexpr double longest_seconds = 600; // where none are given, and an error is far
-constexpr double soon = 2;              // seconds: a forecast may wait for what so short a round shows
+constexpr double max_check_share = 0.2; // of the time limit
+constexpr double longest_seconds = 600; // limit if none is given and the error is far off
+constexpr double soon = 2;              // seconds: a forecast waits for a round as short as this
 
 TargetRounds rounds_of(const Mode& mode, const View& view, Goal& goal) {
     TargetRounds rounds{mode, view, goal, goal.clock(), {}};
@@ -41,7 +41,7 @@ void check_target(const Mode& mode, std::string_view option) {
 }
 
 namespace {
-// What all rounds of a picture are rendered with.
+// What all rounds of an image are rendered with.
 struct Rendering {
     const Mode& mode;
     const Snapshot& snapshot;
@@ -50,7 +50,7 @@ struct Rendering {
     std::shared_ptr<const Prepared> prepared; // null = each round prepares itself
 };
 
-// How far the shutter's moments are off, where there are some; the goal is left what that leaves of it.
+// Error of motion blur from the shutter's moments, if any; reduces goal.error to what that leaves.
 std::optional<Noise> moments_beside(TargetRounds& rounds, Rendering& rendering) {
     const auto& [mode, snapshot, options, settings, prepared] = rendering;
     if (!has_moments(rounds.view, snapshot)) return {};
@@ -63,7 +63,7 @@ std::optional<Noise> moments_beside(TargetRounds& rounds, Rendering& rendering) 
                                              scout ? chances_in(scout->layers) : even_chances(rounds.view, snapshot),
                                              goal.error, goal.seconds > 0, options);
     const Noise moments{std::sqrt(error.value), std::sqrt(error.bound)};
-    if (goal.error > 0) goal.error = error_beside(moments, goal.error).value_or(goal.error); // else it is missed
+    if (goal.error > 0) goal.error = error_beside(moments, goal.error).value_or(goal.error); // none = goal missed
     return moments;
 }
 
@@ -74,7 +74,7 @@ void note_integrator(const Choice& choice, FrameStats& stats) {
         {std::sqrt(error.value), std::sqrt(error.bound)}, choice.candidate.name, choice.candidate.settings};
 }
 
-// Takes the choice's candidate, prepared once for all rounds.
+// Starts over with the choice's candidate, prepared once for all rounds.
 void begin(const Choice& choice, TargetRounds& rounds, Rendering& rendering, FrameStats& stats) {
     rounds.choice = choice, rounds.allotment.reset(), rounds.first_part = 1;
     rounds.done = 0, rounds.freedom = 0, rounds.expected = max_target_samples;
@@ -92,8 +92,8 @@ void begin(const Choice& choice, TargetRounds& rounds, Rendering& rendering, Fra
     note_integrator(choice, stats);
 }
 
-// Tells what the goal is likely to take when `more` seconds come on top of those that have passed: at first, and where
-// that turns out to be wrong early on. Stats keep the last of the first third. What is far gets a limit.
+// Reports the predicted total seconds if `more` remain: at first, and again if that turns out wrong early on. Stats
+// keep the last forecast of the first third. A goal that is far off gets a time limit.
 void make_forecast(double more, TargetRounds& rounds, const FrameOptions& options, FrameStats& stats) {
     constexpr double early = 1.0 / 3, wrong = 1.5;
     const double passed = rounds.goal.clock() - rounds.start, seconds = passed + more, before = stats.forecast_seconds;
@@ -104,12 +104,12 @@ void make_forecast(double more, TargetRounds& rounds, const FrameOptions& option
     if (options.forecast && !as_before) options.forecast(seconds);
 }
 
-// Renders rounds until noise is as small as the goal asks for, or time is up. `round` counts those of all tries.
+// Renders rounds until the noise meets the goal or time is up. `round` is counted across restarts.
 void render_rounds(TargetRounds& rounds, const Rendering& rendering, double work, Layers& result, FrameStats& stats,
                    int& round) {
     const double pixels = pixel_count(rounds.view);
     const auto& progress = rendering.options.progress;
-    double begun = std::min(1.0, rounds.done / rounds.expected), rays = stats.samples * pixels; // that count
+    double begun = std::min(1.0, rounds.done / rounds.expected), rays = stats.samples * pixels; // of rounds that count
     if (rounds.done == 0) rays = 0;
     for (; work > 0; ++round) {
         std::optional<AllottedPart> part;
@@ -138,13 +138,13 @@ void render_rounds(TargetRounds& rounds, const Rendering& rendering, double work
         stats.add(round_stats);
         stats.samples = static_cast<int>(std::lround(rays / pixels));
 
-        // A picture of one sample is the end: it has no variance to go on from.
+        // Stop after an image of one sample per pixel: it has no variance to continue from.
         if (judge(rounds, result, stats) || rays >= max_target_samples * pixels || rounds.freedom == 0) return;
         if (begin_allotment(rounds, result, stats)) rays = 0;
         work = next_round(rounds, stats);
         if (work == 0 || rounds.goal.error == 0) continue;
         make_forecast((rounds.expected - rounds.done) * rounds.work_seconds, rounds, rendering.options, stats);
-        work = next_round(rounds, stats); // by the limit, where there is one now
+        work = next_round(rounds, stats); // within the limit that the forecast may have set
     }
 }
 }
@@ -166,7 +166,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     if (measured) {
         begin(choice_for(rounds, snapshot, settings, options), rounds, rendering, stats);
         stats.prepare_seconds = goal.clock() - rounds.start;
-        if (rounds.choice->scout) round = 1; // none may take the random numbers of the first picture again
+        if (rounds.choice->scout) round = 1; // no round may reuse the scout's random numbers
     }
     const std::optional<Noise> moments = moments_beside(rounds, rendering);
     for (uint32_t check = 1; check <= max_checks; ++check) {
@@ -182,7 +182,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
 
         const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;
         Goal asked = goal;
-        if (!is_timed) asked.seconds = 0; // the limit of what is far: a finer candidate may get there in less
+        if (!is_timed) asked.seconds = 0; // no limit from the forecast: a finer candidate may take less time
         const double samples = stats.samples;
         const Choice after = checked(*rounds.choice, {result, *stats.noise, samples, samples, check < max_checks},
                                      until, mode, rounds.view, snapshot, settings, asked, check, options);

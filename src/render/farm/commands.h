@@ -1,11 +1,11 @@
-// The commands a job consists of, as words for whoever runs them: a shell, an engine, or a reader of `tyndall status`.
+// The commands of a job, as words for whatever runs them: a shell, an engine, or a reader of `tyndall status`.
 #pragma once
 #include "render/farm/farm_job.h"
 
 namespace tyndall {
-// What differs from task to task and from engine to engine. Frames are a range, or one frame where each has its plan.
+// What differs between tasks and engines. Frames are a range, or a single frame if each has its own plan.
 struct CommandBlanks {
-    std::string folder; // of the job, with a slash at its end; empty where commands run in it
+    std::string folder; // of the job, with a trailing slash; empty if commands run in it
     std::string scene, frames, part;
 };
 

@@ -15,20 +15,20 @@ struct FarmJob {
     std::filesystem::path folder; // absolute
     std::string engine;           // slurm or openjd
     std::string program, scene;   // absolute
-    std::string name;             // of the frames
+    std::string name;             // of the frame files
     std::vector<int> frames;      // ascending
-    int parts = 1, chunk = 1;     // parts of a frame, frames of a task
-    int cpus = 0;                 // of a task; 0 = left to the engine
-    int memory = 0, minutes = 0;  // most that a task may take, memory in MiB; 0 = by a forecast
+    int parts = 1, chunk = 1;     // parts per frame, frames per task
+    int cpus = 0;                 // per task; 0 = left to the engine
+    int memory = 0, minutes = 0;  // limits per task, memory in MiB; 0 = from a forecast
     bool plan_for_each_frame = false;
-    std::vector<std::string> plan_options; // words of tyndall plan, but for scene, frames and file
+    std::vector<std::string> plan_options; // of tyndall plan, except scene, frames and file
     bool remove_parts = false;             // once merged
 };
 
-// As files name it: absolute, without a slash at its end.
+// The folder as files name it: absolute, without a trailing slash.
 std::filesystem::path job_folder(const std::filesystem::path& folder);
 
-// Of a scene, as a name that shells, engines and frame patterns leave as it is.
+// A job name from a scene's, in characters that shells, engines and frame patterns leave unchanged.
 std::string job_name_of(const std::filesystem::path& scene);
 
 // Whether tasks of one frame share work that is prepared once.

@@ -20,7 +20,7 @@ namespace tyndall {
 namespace {
 constexpr size_t waiting_threads = 16;
 
-// What a header has to say. Without a plan hash a finished frame may be of any: its plan is not needed any more.
+// The expected header. Without a plan hash a finished frame may be of any plan, since its own is not needed any more.
 struct Expected {
     std::string frame, part, plan_hash;
 };
@@ -35,7 +35,7 @@ std::string disagreement(const ExrGlance& glance, const Expected& expected) {
     return {};
 }
 
-// Everything there is to say against it; none where it can be used, "" where it is not there.
+// Why the file cannot be used; none if it can, "" if it does not exist.
 std::optional<std::string> problem_of(const std::filesystem::path& file, const Expected& expected, bool verify) {
     try {
         const std::optional<ExrGlance> glance = glance_at_exr(file);
@@ -56,7 +56,7 @@ std::string hash_of_plan(const std::filesystem::path& file) {
     return std::filesystem::exists(file, ignored) ? content_hash(read_file(file)) : std::string();
 }
 
-// One frame, and the files of it that are suspicious.
+// The status of one frame; adds its files that cannot be used to `suspects`.
 FarmFrame look_at_frame(const FarmJob& job, int frame, const std::string& shared_plan, bool verify,
                         std::vector<SuspectFile>& suspects) {
     FarmFrame result{frame, true, false, {}};
@@ -81,7 +81,7 @@ FarmFrame look_at_frame(const FarmJob& job, int frame, const std::string& shared
     return result;
 }
 
-// Files beside parts and frames that are none.
+// Counts the temporary files and checkpoints next to plans, parts and frames.
 void count_others(const FarmJob& job, FarmStatus& status) {
     for (const char* folder : {"plans", "parts", "frames"}) {
         std::error_code error;
@@ -94,8 +94,8 @@ void count_others(const FarmJob& job, FarmStatus& status) {
     }
 }
 
-// Calls body(i) for each i below count, on many more threads than processors: what they do is wait for files. What the
-// first of them throws is thrown again.
+// Calls body(i) for each i below count, on many more threads than processors, since they mostly wait for files.
+// Rethrows an exception of one of them.
 void while_waiting(size_t count, const std::function<void(size_t)>& body) {
     std::atomic<size_t> next{0};
     std::exception_ptr problem;

@@ -1,4 +1,4 @@
-// What of a job is finished, told by the names of its files, their sizes and headers.
+// Which frames and parts of a job are finished, by the names, sizes and headers of its files.
 #pragma once
 #include "render/farm/farm_job.h"
 
@@ -19,18 +19,18 @@ struct SuspectFile {
 struct FarmStatus {
     std::vector<FarmFrame> frames; // of the job, in its order
     std::vector<SuspectFile> suspects;
-    uint64_t temporaries = 0; // of tasks that write, or were killed
-    uint64_t checkpoints = 0; // of parts that were begun
+    uint64_t temporaries = 0; // of running or killed tasks
+    uint64_t checkpoints = 0; // of unfinished parts
 };
 
-// Frames without parts count as finished: parts may be removed once they are merged. With `verify` every byte is read.
-// Throws Error (unreadable).
+// A merged frame counts as finished without its parts, which may be removed after merging. With `verify` every byte is
+// read. Throws Error (unreadable).
 FarmStatus look_at(const FarmJob& job, bool verify, const std::atomic<bool>& cancel);
 
-// The tasks of a step (plan, prepare, parts, merge) that are not done, numbered as the job's scripts do: chunks in
-// order, and within them parts.
+// The unfinished tasks of a step (plan, prepare, parts, merge), numbered as in the job's scripts: chunks in order, and
+// parts within them.
 std::vector<int> missing_tasks(const FarmJob& job, const FarmStatus& status, const std::string& step);
 
-// Commands that make just what is missing, in this order, ready for a shell.
+// Shell commands that make exactly what is missing, in this order.
 std::vector<std::string> missing_commands(const FarmJob& job, const FarmStatus& status);
 }

@@ -15,7 +15,7 @@
 
 namespace tyndall {
 namespace {
-// Most nodes that one of the parts holds.
+// The most nodes that any part holds.
 size_t max_nodes(const Mode& mode, const View& view, int asked) {
     const int sections = view.batches * view.sections;
     const int64_t blocks = count_blocks(mode, view), all = int64_t{sections} * view.leaves * blocks;
@@ -27,7 +27,7 @@ size_t max_nodes(const Mode& mode, const View& view, int asked) {
     return nodes;
 }
 
-// Of a part in memory while it is written; a whole frame takes no more than a part of one node.
+// Memory of a part while it is written; a whole frame takes no more than a part of one node.
 double bytes_of_part(const Mode& mode, const View& view, const Snapshot& snapshot, int parts) {
     const size_t light_parts = view.fog_parts ? snapshot.lights.size() + 3 : 0;
     const size_t channels = snapshot.scene && has_colored_fog(*snapshot.scene) ? 1 : 0;
@@ -35,7 +35,7 @@ double bytes_of_part(const Mode& mode, const View& view, const Snapshot& snapsho
     return 2.0 * sizeof(float) * static_cast<double>(numbers) * view.size.x * view.size.y;
 }
 
-// The picture at a size that takes little time, with one sample per pixel.
+// The view at a size that takes little time, with one sample per pixel.
 View small_view(View view) {
     constexpr float width = 160;
     const float share = std::min(1.0f, width / static_cast<float>(std::max(view.size.x, view.size.y)));
@@ -56,7 +56,7 @@ TaskForecast forecast_task(const FarmJob& job, const Scene& scene, const RenderR
     RenderRequest request = asked;
     request.frames = {job.frames.front()};
     RenderPlan plan = plan_as_asked(request);
-    const bool counted = !job.plan_for_each_frame; // samples are
+    const bool counted = !job.plan_for_each_frame; // the number of samples is known
     if (counted) request.grouping = grouping_of(plan.settings.pixel.samples);
     const LoadedFrame loaded = load_first_frame(scene, request);
     View view = view_of(scene, request, plan.settings, request.frames[0]);

@@ -8,7 +8,7 @@ struct RenderRequest;
 struct Scene;
 
 // Scene, models, images, recipes, and the volumes that these frames show with the request's shutter; absolute, sorted,
-// each once. Throws Error (unreadable) for a volume that is missing.
+// without duplicates. Throws Error (unreadable) for a volume that is missing.
 std::vector<std::filesystem::path> input_files(const Scene& scene, const std::vector<int>& frames,
                                                const RenderRequest& request);
 }

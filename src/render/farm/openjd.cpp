@@ -11,7 +11,7 @@ namespace tyndall {
 namespace {
 constexpr int seconds_to_stop = 30; // after SIGTERM: a checkpoint is written within 10
 
-// Objects and arrays of objects over several lines, everything else on one.
+// Formats objects and arrays of objects over several lines, everything else on one.
 void append_lines(std::string& text, const Json& value, const std::string& indent) {
     const bool object = value.kind == Json::Kind::object;
     const auto holds_objects = [](const Json& item) { return item.kind == Json::Kind::object; };
@@ -41,14 +41,14 @@ std::string in_lines(JsonMembers members) {
     return text + "\n";
 }
 
-// As OpenJD writes ranges: 1-9:2.
+// Ranges in OpenJD's syntax: 1-9:2.
 std::string frames_text(const FarmJob& job) {
     std::string text = format_frames(job.frames);
     std::ranges::replace(text, 'x', ':');
     return text;
 }
 
-// A path's default has to be relative to the template, so the program, which lies elsewhere, is a text.
+// The default of a PATH has to be relative to the template, so the program, which is elsewhere, is a STRING.
 Json parameters(const FarmJob& job) {
     return std::vector{json_object({{"name", "Tyndall"},
                                     {"type", "STRING"},
@@ -66,7 +66,7 @@ Json parameters(const FarmJob& job) {
                                     {"description", "Which frames: 1-10:2 or 1,5,9."}})};
 }
 
-// Frames come in chunks where several share a plan, as their engine likes.
+// Frames that share a plan come in chunks, whose size the engine may change.
 Json frames_parameter(const FarmJob& job) {
     JsonMembers members{{"name", "Frames"}, {"range", "{{Param.Frames}}"}};
     if (job.plan_for_each_frame) {
@@ -106,7 +106,7 @@ Json step(const FarmJob& job, const TaskLimits& limits, const char* name, const 
     return json_object(std::move(members));
 }
 
-// The scene as it is found from the folder, where it lies on another machine too.
+// The scene's path relative to the job's folder, so that it is found on another machine too.
 std::string scene_name(const FarmJob& job) {
     return "{{Param.Folder}}/" + std::filesystem::path(job.scene).lexically_relative(job.folder).string();
 }

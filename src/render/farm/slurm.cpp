@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-// What task.sh holds in shell variables, within words of a command.
+// Placeholders in command words for shell variables of task.sh.
 constexpr std::string_view frames_blank = "\1frames", part_blank = "\1part";
 
 std::string replaced(std::string text, std::string_view what, std::string_view by) {
@@ -16,7 +16,7 @@ std::string replaced(std::string text, std::string_view what, std::string_view b
     return text;
 }
 
-// A script with its @BLANKS@ filled in. What one is filled with may look like another: each is replaced once, in order.
+// Fills in the @BLANKS@ of a script in a single pass, since what fills one may look like another.
 using Fillings = std::vector<std::pair<std::string, std::string>>;
 std::string filled(std::string_view script, const Fillings& fillings) {
     std::string text;
@@ -42,7 +42,7 @@ std::string shell_line(const CommandWords& words) {
     return line;
 }
 
-// The frames of each chunk, a word each, in lines of some width.
+// The frames of each chunk, one word per chunk, wrapped into lines.
 std::string chunk_table(const FarmJob& job) {
     std::vector<std::string> words;
     for (const std::vector<int>& chunk : chunks_of(job)) words.push_back(format_frames(chunk));
@@ -77,7 +77,7 @@ std::string slurm_submit_script(const FarmJob& job, const TaskLimits& limits) {
     if (job.cpus > 0) options += formatted(" --cpus-per-task=%d", job.cpus);
     if (job.memory > 0) options += formatted(" --mem=%d", job.memory);
     if (job.minutes > 0) options += formatted(" --time=%d", job.minutes);
-    std::string forecast; // what neither the job nor the environment says
+    std::string forecast; // for what neither the job nor the environment sets
     if (job.memory == 0 && limits.memory > 0)
         forecast += "[ -n \"${SBATCH_MEM_PER_CPU:-}\" ] || " + usual("SBATCH_MEM_PER_NODE", limits.memory);
     if (job.minutes == 0 && limits.minutes > 0) forecast += usual("SBATCH_TIMELIMIT", limits.minutes);

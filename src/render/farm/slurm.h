@@ -1,4 +1,4 @@
-// The scripts of a job for Slurm: submit.sh hands over what is missing, task.sh is what each task runs.
+// The Slurm scripts of a job: submit.sh submits what is missing, task.sh is what each task runs.
 #pragma once
 #include "render/farm/forecast.h"
 
@@ -9,6 +9,6 @@ inline constexpr int tasks_of_array = 1000;
 std::string slurm_submit_script(const FarmJob& job, const TaskLimits& limits);
 std::string slurm_task_script(const FarmJob& job);
 
-// Task numbers as arrays: "FIRST LIST" each, LIST counted from FIRST as --array takes it.
+// Task numbers as job arrays: "FIRST LIST" each, LIST counted from FIRST in the syntax of --array.
 std::vector<std::string> slurm_arrays(const std::vector<int>& tasks);
 }

@@ -1,4 +1,4 @@
-// Paths from the eye: where they start, what they meet, how they go on.
+// Camera paths: where they start, what they hit, how they continue.
 #include "render/frame/camera_paths.h"
 
 #include "base/random.h"
@@ -11,11 +11,11 @@
 
 namespace tyndall {
 namespace {
-// Steps off a surface: beyond the rounding error of the point, below anything visible.
+// Offset to step off a surface: larger than the rounding error of the point, too small to be visible.
 float surface_skip(vec3 point, float travelled) { return std::max(shadow_offset(point), 4e-6f * travelled); }
 
-// Sample `sample` of a shifted van der Corput sequence: the samples of a batch are spread evenly over [0,1). Moved at
-// random within half its stratum, so that regular steps do not beat with regular shadows.
+// Sample `sample` of a van der Corput sequence shifted by `shift`: the samples of a batch are stratified over [0,1).
+// The shift includes a random offset within half a stratum, so that regular steps do not alias with regular shadows.
 float stratified(uint32_t sample, uint32_t shift) { return to_unit(reverse_bits(sample) + shift); }
 
 Path camera_path(const View& view, bool in_moments, ivec2 pixel, int sample, int lane, PixelSample& result) {
@@ -33,7 +33,7 @@ Path camera_path(const View& view, bool in_moments, ivec2 pixel, int sample, int
     path.screen = position / vec2(view.size), path.position = position;
     path.lane = lane;
 
-    // Each batch has random numbers of its own.
+    // Each batch has its own random numbers.
     const uint32_t index =
         static_cast<uint32_t>(pixel.y) * static_cast<uint32_t>(view.size.x) + static_cast<uint32_t>(pixel.x);
     path.seed = hash(index, view.frame, view.seed);
@@ -58,7 +58,7 @@ void start_paths(const View& view, bool in_moments, std::span<const ivec2> pixel
 }
 
 namespace {
-// Ends paths at glowing faces in front of what they meet.
+// Ends paths at visible area lights in front of the surfaces they hit.
 void find_faces(const Snapshot& snapshot, PathPacket& s) {
     for (int i = 0; i < s.count; ++i) {
         const FaceHit face = visible_face(snapshot, s.tested[i]);
@@ -68,7 +68,7 @@ void find_faces(const Snapshot& snapshot, PathPacket& s) {
     }
 }
 
-// A glowing face as a surface: it reflects nothing.
+// The face of an area light as a surface that only emits.
 SurfacePoint face_point(const Light& light, vec3 position) {
     SurfacePoint point;
     point.position = position, point.normal = point.face_normal = light.area->normal;
@@ -146,7 +146,7 @@ RayNumbers ray_numbers(const View& view, int layer, const PathPacket& s) {
 }
 
 namespace {
-// One whole ray for each sample, from the eye to the far plane.
+// One ray per sample, from the camera to the far plane.
 void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
     const size_t count = static_cast<size_t>(s.count);
     Ray rays[16];
@@ -175,7 +175,7 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
     }
 }
 
-// What covers the background, and the depth.
+// Traces through surfaces for alpha and depth.
 void follow_surfaces(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples) {
     for (int layer = 0; layer < max_layers; ++layer) {
         find_surfaces(tracer.snapshot, layer, s);

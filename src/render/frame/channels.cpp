@@ -28,7 +28,7 @@ Prepared prepare_grey(const Mode& mode, const View& view, const Snapshot& snapsh
     return result;
 }
 
-// Takes channel `c` of what one of the three has found.
+// Copies channel `c` from the result of its scene.
 void take_channel(const Scatter& from, glm::length_t c, Scatter& to) {
     to.radiance[c] = from.radiance[c], to.surface[c] = from.surface[c], to.background[c] = from.background[c];
     to.tint[c] = from.transmittance, to.steps += from.steps;

@@ -14,11 +14,11 @@
 namespace tyndall {
 namespace {
 constexpr int tile_side = 4;
-constexpr int fewest_samples = 4; // of a pixel that probes pay for
-// Difference between brightest and darkest over their sum, at which a tile takes more samples, and all it may.
+constexpr int fewest_samples = 4; // per pixel, for probing to pay off
+// Contrast, (max - min) / (max + min), at which a tile starts to take more samples, and at which it takes the most.
 constexpr float min_contrast = 0.15f, full_contrast = 0.6f;
 
-// What centres of pixels show: sums over colours of the picture and of its fog light.
+// Values at pixel centers: channel sums of color and of inscatter.
 struct Probes {
     ivec2 low;
     Image<vec2> values;
@@ -27,7 +27,7 @@ struct Probes {
 Probes probe(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats) {
     View centers = tracer.view;
     centers.pixel_samples = centers.batches = 1, centers.lamps.clear(), centers.filter = PixelFilter::center;
-    centers.background = true; // left out or not, the other layers are the same
+    centers.background = true; // does not affect the other layers
     FrameTracer prober = tracer.with(centers);
     prober.covered = false, prober.fog_seconds = nullptr;
     Probes probes{low, Image<vec2>(high - low)};
@@ -55,7 +55,7 @@ Probes probe(const FrameTracer& tracer, ivec2 low, ivec2 high, FrameStats& stats
     return probes;
 }
 
-// Over a tile and the pixels beside it.
+// Contrast of a tile and the pixels around it.
 float contrast(const Probes& probes, ivec2 corner) {
     const ivec2 size = probes.values.size;
     const ivec2 low = glm::max(corner - 1 - probes.low, 0), high = glm::min(corner + tile_side + 1 - probes.low, size);
@@ -67,7 +67,7 @@ float contrast(const Probes& probes, ivec2 corner) {
     return std::max(both.x, both.y);
 }
 
-// All that factors depend on, for their place among the files of a plan; empty without files.
+// Cache key: everything that the factors depend on; empty without cache files.
 std::string edges_content(const FrameTask& task) {
     const FrameTracer& tracer = task.tracer;
     const CacheFolder* folder = cache_folder(tracer.snapshot);

@@ -24,7 +24,7 @@ void render_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, F
     const View& view = task.tracer.view;
     const size_t part_count = task.parts.size(), of_fog = task.fog_parts, count = tile.count;
     const int sample_count = samples_of(view, tile.corner), batch_size = sample_count / batches_of(view, tile.corner);
-    if (sample_count == 0) return; // the picture is a part of one in which the tile has all it needs
+    if (sample_count == 0) return; // the allotment adds no samples to this tile
     PixelSum sums[16];
     PixelSample samples[16];
     int64_t steps[16] = {};
@@ -126,7 +126,7 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     return std::move(task.layers);
 }
 
-// The part of an image a crop window shows.
+// Crops an image to a window.
 template<class T> void crop(Image<T>& image, ivec2 low, ivec2 size) {
     if (image.empty()) return;
     Image<T> part(size);

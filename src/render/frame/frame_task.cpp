@@ -91,13 +91,13 @@ bool contains(const Layers& layers, ivec2 pixel) {
 }
 
 namespace {
-// Whether alpha has to tell a background from what mattes hold out of it.
+// Whether alpha has to account for mattes that hold out the background.
 bool counts_held(const Snapshot& snapshot) { return has_background(snapshot.background) && has_mattes(snapshot); }
 }
 
 FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                     const FrameOptions& options) {
-    // Named one by one: g++ 12 destroys members of a nested braced initialiser twice when a later one throws.
+    // Local variables first: g++ 12 destroys members of a nested braced initializer twice when a later one throws.
     Layers layers = make_layers(view, options.halves);
     if (tells_channels(snapshot)) layers.channel_transmittance = Image<vec3>(layers.size);
     std::shared_ptr<const Prepared> prepared = options.prepared;
@@ -120,7 +120,7 @@ bool has_moments(const View& view, const Snapshot& snapshot) {
 }
 
 namespace {
-// Refuses what a few moments show that all of them would take.
+// Fails if all moments, judged by the first few, would not fit into memory.
 void check_memory(double before, size_t prepared, size_t moments) {
     constexpr double max_share = 0.8, gibibyte = 1 << 30;
     const double machine = static_cast<double>(machine_memory());
@@ -137,7 +137,7 @@ void check_memory(double before, size_t prepared, size_t moments) {
 Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                        History* history) {
     if (!has_moments(view, snapshot)) return prepare_moment(mode, view, snapshot, settings, history);
-    assert(!history); // it tells frames apart, not moments
+    assert(!history); // a history is kept from frame to frame, not from moment to moment
     Prepared result;
     const LightLayers layers = light_layers(snapshot);
     View at_moment = view;
@@ -155,9 +155,9 @@ Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snaps
 }
 
 namespace {
-constexpr int block_side = 32; // a task's pixels
+constexpr int block_side = 32; // pixels
 
-// Blocks lie on a grid of the full picture, so that tiles do not depend on the crop.
+// Blocks lie on a grid of the full image, so that tiles do not depend on the crop.
 struct Blocks {
     ivec2 first, count;
 

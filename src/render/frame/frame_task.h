@@ -8,16 +8,15 @@ inline constexpr int tile_side = 4; // a tile's 16 rays are traced together
 
 // What all blocks of a frame share.
 struct FrameTask {
-    std::shared_ptr<const Prepared> prepared;         // held for the tracer
-    std::shared_ptr<std::atomic<double>> fog_seconds; // of the mode, of all threads; held for the tracer
+    std::shared_ptr<const Prepared> prepared;         // kept alive for the tracer
+    std::shared_ptr<std::atomic<double>> fog_seconds; // spent in the mode by all threads; kept alive for the tracer
     FrameTracer tracer;
-    double mode_seconds = 0; // its preparation
+    double mode_seconds = 0; // taken to prepare the mode
     Layers layers;
     std::string made_by{}; // mode and settings, where the snapshot has files; else empty
-    // Of the layers: where the parts of fog light go, as many as asked for; then the channels' transmittance, where fog
-    // is coloured.
+    // Layers that receive the parts of inscatter, if requested; then channel_transmittance, if fog is chromatic.
     std::vector<Image<vec3>*> parts;
-    size_t fog_parts = 0; // of these
+    size_t fog_parts = 0; // how many of these are parts of inscatter
     const std::atomic<bool>* cancel = nullptr;
 };
 
@@ -27,23 +26,22 @@ FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot
 // Black layers of the view's crop window.
 Layers make_layers(const View& view, bool halves);
 
-// With an open shutter parts of fog light come by layer, not by light: lights of its moments may differ.
+// With an open shutter, parts of inscatter are indexed by layer, not by light: its moments may have different lights.
 LightLayers light_layers(const Snapshot& snapshot);
 
-// Which of the layers each light of a snapshot goes into: the frame's, or of one of its moments.
+// The layer of each light of a snapshot, which is the frame's or one of its moments'.
 std::vector<int> layers_of_lights(const LightLayers& layers, const Snapshot& snapshot);
 
-// Adds the layers, black. Where the parts of fog light go: for each light, then ambient, emission and multiple.
+// Adds the layers, black. Returns where the parts of inscatter go: for each light, then ambient, emission and multiple.
 std::vector<Image<vec3>*> add_light_layers(const LightLayers& lights, Layers& layers);
 
-// Whether the channels' transmittances are a layer of the frame.
+// Whether the frame has the layer channel_transmittance.
 bool tells_channels(const Snapshot& snapshot);
 
-// Finds where the parts go, with layers made for them. `lights`: empty unless the view asks for them.
+// Sets the task's parts, adding layers for them. `lights`: empty unless the view requests them.
 void find_parts(const View& view, const LightLayers& lights, FrameTask& task);
 
-// The pixels of a tile that lie in the picture; those outside its crop too, since a mode may let neighbours share
-// steps.
+// The pixels of a tile inside the image, also those outside its crop, since a mode may share steps between neighbors.
 struct PixelTile {
     ivec2 corner{0};
     ivec2 pixels[16];
@@ -52,8 +50,8 @@ struct PixelTile {
 
 bool contains(const Layers& layers, ivec2 pixel);
 
-// Calls `render` for each tile that shows in the layers, blocks of tiles in parallel, with the number of the block and
-// statistics that only that block adds to. Returns those of all blocks. Throws Error (internal) when cancelled.
+// Calls `render` for each tile that overlaps the layers, blocks of tiles in parallel, with the block's number and
+// statistics. Returns the sum of the statistics. Throws Error (internal) when cancelled.
 FrameStats for_each_tile(const Layers& layers, const FrameOptions& options,
                          const std::function<void(const PixelTile&, int64_t block, FrameStats&)>& render);
 int64_t count_blocks(ivec2 low, ivec2 size);

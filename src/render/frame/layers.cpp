@@ -6,14 +6,14 @@
 
 namespace tyndall {
 namespace {
-// Into `image` a share of another one, for each pixel.
+// Blends a share of another image into `image`, per pixel.
 template<class T, class Share> void blend(Image<T>& image, const Image<T>& other, const Share& share) {
     if (image.empty()) return;
     for (int y = 0; y < image.size.y; ++y)
         for (int x = 0; x < image.size.x; ++x) image.at(x, y) += share({x, y}) * (other.at(x, y) - image.at(x, y));
 }
 
-// What sums of independent pictures add up, with factors that are shares to the second (variances) or fourth power.
+// Blends variances (power 2) or squared standard errors of variances (power 4) of independent images.
 template<class T, class Share> void blend_power(Image<T>& image, const Image<T>& other, const Share& share, int power) {
     for (int y = 0; y < image.size.y; ++y)
         for (int x = 0; x < image.size.x; ++x) {
@@ -24,7 +24,7 @@ template<class T, class Share> void blend_power(Image<T>& image, const Image<T>&
         }
 }
 
-// Of two batches that went on: their means come together one by one.
+// Blends images whose two batches continue: the batches' difference is blended, and the variance follows from it.
 template<class Share>
 void blend_batches(Image<vec3>& apart, const Image<vec3>& other, Image<vec3>& variance, Image<float>& error,
                    const Share& share) {
@@ -98,7 +98,7 @@ void blend_layers(Layers& layers, const Layers& other, const TileShares& shares)
 }
 
 namespace {
-constexpr double certain = 1e9; // degrees of freedom
+constexpr double certain = 1e9; // degrees of freedom of a variance that is known exactly
 
 double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
 
@@ -108,8 +108,8 @@ double mean_of(const Image<vec3>& image) {
     return sum / static_cast<double>(image.pixels.size());
 }
 
-// Below this share lie 99.5 % of the ratios of two independent χ², each over its degrees of freedom: Fisher's F after
-// Paulson (1942). Below three degrees of the divisor nothing is known but that it is a lot.
+// 99.5 % quantile of the ratio of two independent χ², each over its degrees of freedom: Fisher's F after Paulson
+// (1942). Not valid below three degrees of freedom of the divisor, where the quantile is very large.
 double largest_ratio(double above, double below) {
     const double a = 2 / (9 * below), b = 2 / (9 * above), z = noise_deviations * noise_deviations;
     const double square = (1 - a) * (1 - a) - z * a, product = (1 - a) * (1 - b);
@@ -122,14 +122,14 @@ double largest_ratio(double above, double below) {
 double largest_square(double pixels) { return largest_ratio(pixels, certain); }
 
 namespace {
-// A picture's squared error adds up from those of its pixels, and so does the estimate of what it is on the average.
-// Each sum counts as that of as many squares of normal numbers as give it the same squared error (Satterthwaite 1946).
+// The squared error of an image is the sum of its pixels', and so is the estimate of its expected value. Each sum
+// counts as that of as many squared normals as give it the same variance (Satterthwaite 1946).
 Noise noise_of(const Image<vec3>& picture, const Image<vec3>& variances, const Image<float>& squared_errors) {
     const double mean = mean_of(picture), variance = mean_of(variances);
     if (!(variance > 0)) return {};
     if (!(mean > 0)) return {infinity, infinity, infinity};
 
-    double squares = 0, squared_error = 0; // of the sum of all variances
+    double squares = 0, squared_error = 0; // squared_error: of the sum of all variances
     for (const vec3& value : variances.pixels) squares += channel_mean(value) * channel_mean(value);
     for (const double square : squared_errors.pixels) squared_error += square;
     const double sum = variance * static_cast<double>(picture.pixels.size());
@@ -142,7 +142,8 @@ Noise worse(const Noise& a, const Noise& b) {
     return {std::max(a.error, b.error), std::max(a.bound, b.bound), std::max(a.settled, b.settled)};
 }
 
-// Half the squared differences from the pixels around: the variance on average, and what their means differ by.
+// Half the squared differences from adjacent pixels: on average their variance plus half the squared difference of
+// their means.
 Noise noise_by_neighbours(const Image<vec3>& picture) {
     Image<vec3> variances(picture.size);
     Image<float> errors(picture.size);
@@ -159,8 +160,7 @@ Noise noise_by_neighbours(const Image<vec3>& picture) {
             }
             const vec3 variance = sum / std::max(count, 1.0f);
             const float mean = static_cast<float>(channel_mean(variance));
-            variances.at(x, y) = variance,
-                            errors.at(x, y) = 2 * mean * mean; // as known as one square of a normal number
+            variances.at(x, y) = variance, errors.at(x, y) = 2 * mean * mean; // as uncertain as one squared normal
         }
     return noise_of(picture, variances, errors);
 }
@@ -172,8 +172,8 @@ Noise noise_of(const Layers& layers) {
 }
 
 Noise noise_by_neighbours(const Layers& layers) {
-    // An edge crosses a pixel anywhere: its variance is a sixth of the squared step, and half the squared differences
-    // add up to a half of it across and a sixth along, of which two pixels and two directions make a third.
+    // Along an edge, which crosses a pixel anywhere, the variance is a sixth of the squared step. Half the squared
+    // differences are a half of it across the edge and a sixth along it, a third on average: twice the variance.
     const double edge_share = std::sqrt(0.5);
     Noise noise = worse(noise_by_neighbours(layers.color), noise_by_neighbours(layers.inscatter));
     noise.error *= edge_share;

@@ -1,4 +1,4 @@
-// Parts of a frame into its image: nodes add up to groups as they do in one run.
+// Merges the parts of a frame into its image: nodes are summed into groups as in a single run.
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
@@ -12,7 +12,7 @@
 
 namespace tyndall {
 namespace {
-// The sums of a node, which lies in several parts where those hold slices of it.
+// The sums of a node, from several parts if they hold slices of it.
 using Nodes = std::map<SumNode, std::vector<const std::vector<float>*>>;
 
 Nodes nodes_in(std::span<const FramePart> parts) {
@@ -26,7 +26,7 @@ void add(std::span<const float> from, std::span<float> to) {
     for (size_t i = 0; i < to.size(); ++i) to[i] += from[i];
 }
 
-// A range of a node's numbers; zeros where it is missing.
+// A range of a node's sums; zeros if it is missing.
 std::vector<float> node_sums(const Nodes& nodes, const SumNode& node, size_t first, size_t count) {
     std::vector<float> sums(count, 0.0f);
     if (const auto found = nodes.find(node); found != nodes.end()) {
@@ -38,7 +38,7 @@ std::vector<float> node_sums(const Nodes& nodes, const SumNode& node, size_t fir
     return sums;
 }
 
-// That of the sample nearest the pixel's centre; the first of those that are as near.
+// Depth of the sample nearest the pixel's center; the first of several at the same distance.
 float nearest_depth(std::span<const FramePart> parts, size_t pixel) {
     float nearest = infinity, depth = infinity;
     for (const FramePart& part : parts)
@@ -47,8 +47,8 @@ float nearest_depth(std::span<const FramePart> parts, size_t pixel) {
     return depth;
 }
 
-// Zeroes sections that would add noise: the mean of k of their means has the variance of a sample times the sum of 1 /
-// n over k², n being the samples of each. Returns how many are left.
+// Zeroes sections that would add noise: the mean of k section means has the variance of one sample times Σ(1 / n) / k²,
+// with n samples in each. Returns how many are left.
 int keep_helpful_sections(std::span<float> sums, size_t numbers) {
     std::vector<float*> groups;
     for (size_t at = 0; at < sums.size(); at += numbers)
@@ -69,9 +69,9 @@ struct Merging {
     const FramePart& like;
     int sections = 0;
     MergedParts& merged;
-    std::vector<Image<vec3>*> lights; // of the merged layers, and the transmittance of the channels
-    bool alone = false;               // a pixel has one section only
-    std::mutex counting{};            // held to change that and counts
+    std::vector<Image<vec3>*> lights; // of the merged layers; then channel_transmittance
+    bool alone = false;               // whether a pixel has fewer than two sections
+    std::mutex counting{};            // protects `alone` and the counts in `merged`
 };
 
 // Row `row` of the image, which is row `row - first` of the parts.
@@ -108,7 +108,7 @@ void merge_row(std::span<const FramePart> parts, const Nodes& nodes, int first, 
     merging.merged.stats.add(counted), merging.merged.empty_pixels += empty, merging.alone |= alone;
 }
 
-// Lines that are packed together lie in one band; a band's sums take some 256 MB.
+// Lines that are compressed together lie in one band; a band's sums take about 256 MB.
 int rows_of_band(const FramePart& like, size_t nodes) {
     constexpr size_t packed = 16, bytes = size_t{256} << 20;
     const size_t row = nodes * like.numbers * static_cast<size_t>(like.size.x) * sizeof(float);

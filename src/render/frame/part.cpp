@@ -60,7 +60,7 @@ bool holds(const PartRange& range, int64_t leaf, int64_t block) {
 struct PartWork {
     FramePart& part;
     const Checkpoints& checkpoints;
-    std::shared_mutex storing{}; // shared by tiles that are stored, held alone while a checkpoint is kept
+    std::shared_mutex storing{}; // shared while tiles are stored, exclusive while a checkpoint is written
     std::atomic<double> next = steady_seconds() + checkpoints.seconds;
 
     size_t place(ivec2 pixel) const {
@@ -90,7 +90,7 @@ void store_tile(const TileSums& tile, const std::vector<std::vector<float>>& sum
     }
 }
 
-// By the first thread that finds it is time.
+// Writes a checkpoint when one is due, on the first thread to notice.
 void keep_in_time(PartWork& work) {
     double due = work.next;
     if (steady_seconds() < due || !work.next.compare_exchange_strong(due, infinity)) return;
@@ -113,7 +113,7 @@ void render_part_tile(const FrameTask& task, const PixelTile& tile, int64_t bloc
     keep_in_time(work);
 }
 
-// What an earlier run dropped of its samples counts as well.
+// Also counts the samples that an earlier run dropped.
 void count_dropped(const FramePart& part, FrameStats& stats) {
     for (int y = 0; y < part.size.y; ++y)
         for (int x = 0; x < part.size.x; ++x)
@@ -129,7 +129,7 @@ bool is_same(const FramePart& a, const FramePart& b) {
            a.numbers == b.numbers && a.covered == b.covered && a.lights.names == b.lights.names;
 }
 
-// Throws Error (usage) for a part that no EXR file holds.
+// Throws Error (usage) for a part that does not fit into an EXR file.
 void check_size(const FramePart& part) {
     const size_t channels = nodes_of(part.range, part.leaves).size() * part.numbers + 3; // Z, offset and finished
     const double bytes = sizeof(float) * static_cast<double>(channels) * part.size.x * part.size.y;
@@ -140,7 +140,7 @@ void check_size(const FramePart& part) {
                        channels, bytes / (1 << 30), max_channels));
 }
 
-// The part without its samples, or with those that an earlier run has left of it.
+// The part without samples, or with those of an earlier run.
 FramePart begun_part(FramePart part, std::optional<FramePart> last) {
     if (last && is_same(*last, part)) return std::move(*last);
     part.nodes = nodes_of(part.range, part.leaves);
@@ -151,7 +151,7 @@ FramePart begun_part(FramePart part, std::optional<FramePart> last) {
     return part;
 }
 
-// All tiles that are not there yet.
+// Renders all tiles that are not finished.
 FrameStats render_tiles(const FrameTask& task, const FrameOptions& options, const Checkpoints& checkpoints,
                         FramePart& part) {
     PartWork work{part, checkpoints};

@@ -1,4 +1,4 @@
-// Front-to-back compositing of fog stretches and surfaces for sixteen camera rays at once.
+// Front-to-back compositing of fog segments and surfaces for sixteen camera rays at once.
 #include "render/frame/samples.h"
 
 #include "base/clock.h"
@@ -18,7 +18,7 @@
 
 namespace tyndall {
 namespace {
-// How far there is fog to ask for, in any channel.
+// Distance to the end of the fog along a ray, in any channel.
 float reach_of(const FrameTracer& tracer, const Ray& ray) {
     float reach = fog_reach(tracer.snapshot.media, ray);
     for (const std::vector<Medium>& media : tracer.snapshot.channel_media)
@@ -64,7 +64,7 @@ void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<Pixe
     }
 }
 
-// Light of the surfaces met.
+// Adds the light of the surfaces hit.
 void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, const SurfacesMet& met,
                   std::span<PixelSample> samples) {
     const size_t points = static_cast<size_t>(tracer.light_points);
@@ -94,7 +94,7 @@ void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, con
 void add_background(const FrameTracer& tracer, const Path& path, PixelSample& result) {
     result.background +=
         path.through * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
-    result.alpha = std::max(1 - mean_component(path.through) - result.held, 0.0f); // rounding may take it below
+    result.alpha = std::max(1 - mean_component(path.through) - result.held, 0.0f); // rounding may make it negative
 }
 }
 
@@ -142,8 +142,8 @@ void follow(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> sam
         follow_paths(tracer, s, samples, parts);
 }
 
-// The paths of a packet that show one moment, followed through its scene; their light goes where that of the frame's
-// lights does.
+// Traces the paths of a packet that show one moment through its scene; adds the light of its lights to the frame's
+// layers.
 void follow_moment(const FrameTracer& tracer, const PathPacket& all, int moment, std::span<PixelSample> samples,
                    std::span<vec3> parts) {
     const Prepared& prepared = tracer.prepared.moments[static_cast<size_t>(moment)];

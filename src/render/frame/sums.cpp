@@ -12,7 +12,7 @@ void add_color(vec3 color, std::span<float> sums) {
     for (int c = 0; c < 3; ++c) sums[static_cast<size_t>(c)] += color[c];
 }
 
-// One that is not finite counts as taken only.
+// Adds a finite sample; one that is not finite counts as taken only.
 void add_sample(const PixelSample& sample, std::span<const vec3> parts, bool channels, std::span<float> sums) {
     add_color(sample.surface, sums.subspan(surface_sum));
     add_color(sample.background, sums.subspan(background_sum));
@@ -69,7 +69,7 @@ int root_level(int leaves) {
 }
 
 namespace {
-// The sums of a pixel's sections; those without samples count for nothing.
+// The sums of a pixel's sections; those without samples are skipped.
 struct PixelSections {
     std::span<const float> sums;
     size_t numbers; // of each
@@ -82,7 +82,7 @@ struct PixelSections {
 
 vec3 color_at(std::span<const float> sums, size_t at) { return {sums[at], sums[at + 1], sums[at + 2]}; }
 
-// Of a value of each section, in two passes: as all of them are there, no running moments are needed.
+// Moments of a value over the sections, in two passes: all sections are in memory, so no running moments are needed.
 template<class Value> RunningSpread spread_of(const PixelSections& sections, const Value& value) {
     RunningSpread spread;
     sections.for_each([&](std::span<const float> own) { spread.mean += dvec3(value(own)), ++spread.count; });

@@ -1,4 +1,4 @@
-// Several pictures of one view side by side, with lines of text under each.
+// Several images of one view side by side, with lines of text under each.
 #pragma once
 #include "render/image/view_transform.h"
 

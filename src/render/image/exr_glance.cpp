@@ -40,7 +40,7 @@ public:
     bool is_there() const { return descriptor_ >= 0; }
     uint64_t bytes() const { return bytes_; }
 
-    // As much of it as there is, up to the buffer's size.
+    // Reads up to the buffer's size; less at the end of the file.
     std::string_view read(uint64_t offset, std::span<char> buffer) const {
         const ssize_t got =
             offset < bytes_ ? pread(descriptor_, buffer.data(), buffer.size(), static_cast<off_t>(offset)) : 0;
@@ -54,7 +54,7 @@ private:
     uint64_t bytes_ = 0;
 };
 
-// The bytes of a header, taken one after another; `short_of` when they end early.
+// Reads the bytes of a header in order; `short_of` is set when they end early.
 struct Taken {
     std::string_view left;
     bool short_of = false;
@@ -82,10 +82,10 @@ struct Taken {
 // Where the table of blocks begins, and how many blocks there are.
 struct BlockTable {
     size_t start = 0;
-    int64_t blocks = 0, first_line = 0, lines = 1; // of a block
+    int64_t blocks = 0, first_line = 0, lines = 1; // lines: per block
 };
 
-// Nothing where the header is longer than the bytes are.
+// None if the header is longer than the bytes.
 std::optional<BlockTable> read_header(std::string_view bytes, const std::string& file, ExrGlance& glance) {
     Taken taken{bytes};
     if (taken.integer() != 20000630 || (taken.integer() & ~0x400) != 2)
@@ -114,7 +114,7 @@ std::optional<BlockTable> read_header(std::string_view bytes, const std::string&
     return table;
 }
 
-// The last block's entry of the table, its line and size, and the file's end have to agree.
+// Whether the last block's table entry, line and size agree with the end of the file.
 bool ends_with_last_block(const ReadFile& file, std::string_view bytes, const BlockTable& table) {
     std::array<char, 8> room{};
     const uint64_t place = table.start + 8 * static_cast<uint64_t>(table.blocks - 1);

@@ -1,5 +1,5 @@
-// What an EXR of ours says of itself, from its header and the place of its last block: nothing is decoded, so that tens
-// of thousands of files take a second.
+// A quick check of EXR files by header and position of the last block: nothing is decoded, so that tens of thousands of
+// files take a second.
 #pragma once
 #include <filesystem>
 #include <optional>
@@ -11,7 +11,7 @@ struct ExrGlance {
     bool partial = false;               // tyndall:partial: merged while parts were missing
 };
 
-// None where there is no file. Throws Error (unreadable, refused): no EXR of scanlines, or one that does not end where
-// its last block does, as when it was cut off.
+// None if there is no file. Throws Error (unreadable, refused) if it is not a scanline EXR or is truncated: it has to
+// end with its last block.
 std::optional<ExrGlance> glance_at_exr(const std::filesystem::path& file);
 }

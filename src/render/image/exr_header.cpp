@@ -1,4 +1,4 @@
-// OpenEXR's standard attributes: windows, colour space, time and camera.
+// OpenEXR's standard attributes: windows, color space, time and camera.
 #include "render/image/exr_header.h"
 
 #include <ImfFramesPerSecond.h>
@@ -19,14 +19,14 @@ Imath::M44f world_to_camera(const Camera& camera) {
     return m;
 }
 
-// Width and height of the picture: at distance 1 (perspective) or everywhere (orthographic).
+// Width and height of the image: at distance 1 (perspective) or everywhere (orthographic).
 vec2 screen_window(const Camera& camera, ivec2 display) {
     const bool orthographic = camera.ortho_height > 0;
     const float height = orthographic ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov);
     return {height * static_cast<float>(display.x) / static_cast<float>(display.y), height};
 }
 
-// Camera space to the picture: (0,0) its upper left corner, (1,1) its lower right one, after division by w.
+// Camera space to NDC: (0,0) is the image's upper left corner, (1,1) its lower right one, after division by w.
 Imath::M44f camera_to_ndc(const Camera& camera, ivec2 display) {
     const vec2 window = screen_window(camera, display);
     const bool orthographic = camera.ortho_height > 0;

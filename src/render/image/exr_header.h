@@ -1,4 +1,4 @@
-// Header attributes of our pictures. For the EXR files of this folder only.
+// Header attributes of EXR images. For the EXR files of this folder only.
 #pragma once
 #include "render/image/exr.h"
 

@@ -1,4 +1,4 @@
-// Layers to an OpenEXR file in memory, then to disk.
+// Encodes layers as an OpenEXR file in memory, then writes it to disk.
 #include "base/error.h"
 #include "base/exr/exr_attributes.h"
 #include "base/io/file.h"
@@ -22,7 +22,7 @@
 
 namespace tyndall {
 namespace {
-// OpenEXR writes the line table last, over its place holder: inside the bytes already there.
+// A stream in memory. OpenEXR writes the line offset table last, over its placeholder among the bytes already there.
 class MemoryStream : public Imf::OStream {
 public:
     MemoryStream(const char* name, size_t room) : OStream(name) { data.reserve(room); }
@@ -45,7 +45,7 @@ bool wants(const ExrOptions& options, std::string_view layer) {
     return std::ranges::find(options.layers, layer) != options.layers.end();
 }
 
-// Layer names for lights: letters, digits and _ only, unique, short enough that `light_NAME.R` has 31 bytes.
+// Layer names for lights: letters, digits and _ only, unique, at most 31 bytes as `light_NAME.R`.
 std::vector<std::string> light_layer_names(const Layers& layers) {
     std::vector<std::string> result;
     std::set<std::string> taken;
@@ -116,7 +116,7 @@ std::vector<half> as_half(const ExrChannel& channel, size_t count, uint64_t& cla
     return result;
 }
 
-// Puts the file's hash where the header holds the place for it.
+// Writes the file's hash over its placeholder in the header.
 void add_check(std::vector<std::byte>& file) {
     const std::string_view bytes(reinterpret_cast<const char*>(file.data()), file.size());
     const std::string hash = content_hash(bytes);
@@ -152,7 +152,7 @@ std::vector<std::byte> encoded(const std::filesystem::path& file, const ExrWindo
 
     MemoryStream stream(file.c_str(), count * channels.size() * sizeof(float));
     {
-        // Blocks of lines are packed at once; one thread means one.
+        // Compresses blocks of lines in parallel; 0 = on the calling thread.
         const int threads = thread_count() > 1 ? thread_count() : 0;
         Imf::setGlobalThreadCount(threads);
         Imf::OutputFile output(stream, header, threads);

@@ -1,6 +1,6 @@
 #include "render/image/lettering.h"
 
-// The library leaves functions unused.
+// The header defines functions that are not used here.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb_easy_font.h>
@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-// As the font library takes it.
+// Replaces what the font library cannot draw.
 std::string plain(const std::string& text) {
     std::string result = text;
     for (char& c : result)

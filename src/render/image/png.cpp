@@ -37,7 +37,7 @@ uint32_t checksum(std::string_view bytes) {
     return ~sum;
 }
 
-// tEXt of the PNG specification: its length, and the checksum of its name and content.
+// A tEXt chunk (PNG specification): length, name and content, CRC of both.
 std::string text_chunk(const std::string& keyword, const std::string& value) {
     const std::string content = keyword + '\0' + value, chunk = "tEXt" + content;
     return big_endian(static_cast<uint32_t>(content.size())) + chunk + big_endian(checksum(chunk));

@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-// A function of one number at 128 places of each power of two from 2^-20 to 2^8; straight in between.
+// A tabulated function: 128 values per power of two from 2^-20 to 2^8, linearly interpolated.
 class Curve {
 public:
     template<class Function> explicit Curve(const Function& function) {
@@ -31,15 +31,15 @@ private:
     std::array<float, powers * 128 + 2> values_;
 };
 
-// IEC 61966-2-1, as codes.
+// The sRGB curve (IEC 61966-2-1), as codes.
 double encoded(double x) {
     x = std::min(x, 1.0);
     return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
 }
 
-// AgX (Troy Sobotka 2022): the working space is drawn in, so that pure colours bleed into the other channels when they
-// get bright; a sigmoid over the logarithm of each channel; and out again. Matrices, polynomial and the look "punchy"
-// (contrast, saturation) are those of Benjamin Wrensch (2023).
+// AgX (Troy Sobotka 2022): a matrix narrows the gamut, so that pure colors bleed into the other channels when they get
+// bright; a sigmoid maps the logarithm of each channel; a second matrix widens the gamut again. Matrices, polynomial
+// and the look "punchy" (contrast, saturation) are those of Benjamin Wrensch (2023).
 const mat3 inset(0.842479062253094f, 0.0423282422610123f, 0.0423756549057051f, //
                  0.0784335999999992f, 0.878468636469772f, 0.0784336f,          //
                  0.0792237451477643f, 0.0791661274605434f, 0.879142973793104f);
@@ -66,7 +66,7 @@ vec3 filmic_codes(vec3 linear) {
     return codes.at(outset * glm::mix(vec3(luminance(bent)), bent, saturation));
 }
 
-// Black where there is no number, and as bright as floats get where there is no end.
+// NaN and negative values become 0, infinite ones 1e30.
 vec3 cleaned(vec3 color) {
     const auto one = [](float x) { return x > 0 ? std::min(x, 1e30f) : 0.0f; };
     return {one(color.x), one(color.y), one(color.z)};

@@ -1,5 +1,5 @@
-// How light becomes a picture for eyes: exposure, view transform, sRGB, dither. PNGs, contact sheets, charts and the
-// viewer come through here, so that they look alike.
+// Linear light to displayed color: exposure, view transform, sRGB, dither. PNGs, contact sheets, charts and the viewer
+// all use it, so that they look alike.
 #pragma once
 #include "base/image.h"
 
@@ -7,8 +7,8 @@
 #include <vector>
 
 namespace tyndall {
-// filmic: AgX, which rolls highlights off over six stops and lets them lose their colour on the way to white.
-// srgb: values as they are, cut off at 1.
+// filmic: AgX, which rolls highlights off over six stops and desaturates them on the way to white.
+// srgb: values unchanged, clipped at 1.
 enum class ViewTransform { filmic, srgb };
 const std::vector<std::string>& view_transform_names();
 inline const std::string& name_of(ViewTransform transform) {
@@ -20,7 +20,7 @@ struct Display {
     ViewTransform transform = ViewTransform::filmic;
 };
 
-// Linear Rec.709 as a display shows it: sRGB codes, 0..255, within a hundredth of a code. What is no colour is black.
+// Linear Rec.709 to sRGB codes, 0..255, accurate to a hundredth of a code. NaN and negative values become black.
 vec3 display_value(vec3 linear, const Display& display);
 
 // The same dithered by up to half a code.

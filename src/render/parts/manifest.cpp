@@ -20,7 +20,7 @@ fs::path plan_folder(const fs::path& plan_file) { return normal_path(plan_file).
 Json file_json(const std::string& name, const FileStamp& stamp, const std::string& hash) {
     return json_object({{"name", name},
                         {"bytes", static_cast<double>(stamp.size)},
-                        {"changed", std::to_string(stamp.changed)}, // as text: JSON numbers lose its last digits
+                        {"changed", std::to_string(stamp.changed)}, // as text: JSON numbers would lose the last digits
                         {"hash", hash}});
 }
 
@@ -29,7 +29,7 @@ FileStamp stamp_in(const Json& file) {
             parsed<int64_t>(file.string_or("changed", "")).value_or(0)};
 }
 
-// Names of files that lie in the folder itself and nowhere else.
+// The name of a cache file in the folder itself; refuses any other path.
 std::string plain_name(const Json& file, const fs::path& manifest) {
     std::string name = file.string_or("name", "");
     if (fs::path(name).filename() != name || !name.ends_with(cache_extension))

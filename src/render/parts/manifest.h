@@ -1,5 +1,5 @@
-// What was prepared for a plan: a folder beside it, plan.json -> plan.cache, that holds cache files and for each frame
-// a manifest, frame.0001.json, of the files it needs and of the volumes it was made from.
+// Prepared data of a plan: a folder next to it, plan.json -> plan.cache, that holds cache files and for each frame a
+// manifest, frame.0001.json, of the files it needs and the volumes they were made from.
 #pragma once
 #include "base/io/cache_folder.h"
 
@@ -22,15 +22,14 @@ std::filesystem::path cache_folder_of(const std::filesystem::path& plan_file);
 // Throws Error (unwritable).
 void save_manifest(const std::filesystem::path& plan_file, const FrameManifest& manifest);
 
-// Nothing where the frame was not prepared. Throws Error (unreadable, refused).
+// None if the frame was not prepared. Throws Error (unreadable, refused).
 std::optional<FrameManifest> load_manifest(const std::filesystem::path& plan_file, int frame);
 
-// The files that were prepared for frames of a plan, copied to `local` unless that is empty; null where there are none.
-// A note says so where they are of another plan. Throws Error (unreadable, refused).
+// Opens the files prepared for frames of a plan, copied to `local` unless that is empty; null if there are none or,
+// with a note, if they were prepared for another plan. Throws Error (unreadable, refused).
 std::shared_ptr<CacheFolder> open_prepared(const SavedPlan& plan, const std::vector<int>& frames,
                                            const std::filesystem::path& local, std::vector<std::string>& notes);
 
-// Reads every byte of what was prepared for a frame of the plan, and of the volumes it was made from. Throws Error
-// (unreadable, refused).
+// Reads and checks every byte of the files prepared for a frame of the plan. Throws Error (unreadable, refused).
 void check_prepared(const SavedPlan& plan, int frame);
 }

@@ -16,8 +16,8 @@
 
 namespace tyndall {
 namespace {
-// Whether `after` begins where `before` ends. Blocks go into slices by their number: leaves cut into different numbers
-// of slices may only meet at whole leaves.
+// Whether `after` begins where `before` ends. A block's slice depends on the number of slices: leaves divided into
+// different numbers of slices can only meet at whole leaves.
 enum class Meeting { exact, gap, overlap };
 Meeting meeting_of(const PartRange& before, const PartRange& after) {
     const int64_t end = before.last * after.slices, begin = after.first * before.slices;
@@ -47,13 +47,13 @@ void check_alike(const PartFile& part, const PartFile& first) {
 }
 
 namespace {
-// The samples that parts hold, found from the first part to the last.
+// The samples that parts hold, accumulated from the first part to the last.
 struct Holdings {
-    const int leaves; // of a group
+    const int leaves; // per group
     PartGroups found{};
     double held = 0; // leaves
 
-    // From a leaf to another one, not included.
+    // Records the first gap: leaves `first` to `last` (excluded).
     void add_gap(const PartFile& beside, int64_t first, int64_t last, const PartFile* next = nullptr) {
         if (!found.gap.empty()) return;
         found.beside = beside.file;
@@ -104,7 +104,7 @@ PartGroups check_parts(std::vector<PartFile>& parts, const SavedPlan& plan) {
 }
 
 namespace {
-// Parts rendered from the bits of one run's hash make its frame; one with samples missing is none that --resume keeps.
+// Marks a frame with missing samples as partial, with another hash, so that --resume does not keep it.
 void note_gap(const PartGroups& groups, Provenance& provenance) {
     if (groups.gap.empty()) return;
     provenance.attributes["tyndall:partial"] = formatted("%.4g of the samples", groups.share);

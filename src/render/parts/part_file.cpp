@@ -31,7 +31,7 @@ std::string range_text(const PartRange& range) {
 
 std::string label(const Grouping& grouping) { return formatted("%d/%d", grouping.part, grouping.parts); }
 
-// What a part's header says that its image's does not.
+// Adds the header attributes that a part has and its image does not.
 void add_attributes(const FramePart& part, const Grouping& grouping, const std::filesystem::path& file,
                     std::map<std::string, std::string>& attributes) {
     const auto absolute = [](const std::filesystem::path& path) {
@@ -94,8 +94,8 @@ const Image<float>& channel_of(const ExrFile& exr, const std::string& name, cons
     return *channel;
 }
 
-// Numbers of samples are whole, no more are kept than taken, and as many taken as a node may have; of a slice perhaps
-// none. No sum is NaN.
+// Throws Error (refused) unless sample counts are whole, no more are kept than taken, the number taken is possible for
+// the node (a slice may have none) and no sum is NaN.
 void check_sums(std::span<const float> sums, const SumNode& node, const FramePart& part, const SectionSamples& section,
                 const std::string& file) {
     const bool every_pixel = part.range.slices == 1 && part.finished.empty();
@@ -112,7 +112,7 @@ void check_sums(std::span<const float> sums, const SumNode& node, const FramePar
         refuse(file, "damaged: it holds sums that are no numbers");
 }
 
-// Which nodes there are, and how many numbers each has.
+// Finds the nodes and the number of values per pixel and node.
 void find_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
     const int64_t leaves = (part.range.last - part.range.first) / part.range.slices;
     if (leaves / part.leaves > static_cast<int64_t>(exr.channels.size()))
@@ -122,7 +122,7 @@ void find_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
     while (exr.channel(channel_name(part.nodes[0], part.numbers))) part.numbers += 3;
 }
 
-// Those of the rows that the file was read for.
+// Reads the sums of the rows in `exr`.
 void read_sums(const ExrFile& exr, const std::string& file, const SectionSamples& section, FramePart& part) {
     part.depth = channel_of(exr, "Z", file), part.off_center = channel_of(exr, "offset", file);
     part.size = part.depth.size;
@@ -162,7 +162,7 @@ void write_part(const std::filesystem::path& file, const FramePart& part, Proven
     channels.push_back({"offset", part.off_center.pixels.data(), 1, true});
     const bool finished = part.finished.empty();
     if (!finished) channels.push_back({"finished", part.finished.pixels.data(), 1, true});
-    // Sums of samples are noise: ZIP makes files half as large as run lengths do, but takes ten times as long.
+    // Sums of samples are noisy: ZIP halves the size of run-length encoding but takes ten times as long.
     const ExrPacking packing = finished ? ExrPacking::run_lengths : ExrPacking::none;
     write_exr_channels(file, {part.display, part.low, part.size}, channels, provenance, packing);
 }

@@ -15,7 +15,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_leaves = 64, max_sections = 8; // of all groups; of a single one
+constexpr int max_leaves = 64, max_sections = 8; // in all groups together; in a single group
 
 Json settings_json(const Settings& settings) {
     JsonMembers members;
@@ -23,7 +23,7 @@ Json settings_json(const Settings& settings) {
     return json_object(std::move(members));
 }
 
-// As seen from the folder of the plan.
+// The scene's path relative to the plan's folder.
 std::string scene_name(const std::filesystem::path& scene, const std::filesystem::path& plan) {
     const auto absolute = [](const std::filesystem::path& path) {
         return std::filesystem::absolute(path).lexically_normal();
@@ -33,7 +33,7 @@ std::string scene_name(const std::filesystem::path& scene, const std::filesystem
 
 Json error_json(const Noise& error) { return std::vector{error.error, error.bound}; }
 
-// Where the error decides how many samples there are; writes the counts beside the plan.
+// For a plan whose error decides the number of samples; writes the counts next to the plan.
 Json target_json(const std::filesystem::path& file, const Grouping& grouping) {
     const std::filesystem::path counts = std::filesystem::path(file).replace_extension(".counts");
     const PlannedError& planned = grouping.error;
@@ -124,7 +124,7 @@ RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
     return request;
 }
 
-// Errors of the command line are errors of the file here.
+// Reports errors as those of the file, not of the command line.
 RenderRequest checked_request(const Json& json, const std::filesystem::path& file) {
     try {
         RenderRequest request = request_of(json, file);

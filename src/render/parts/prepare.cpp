@@ -50,7 +50,7 @@ uint64_t remove_file(const fs::path& file) {
 FrameManifest manifest_of(const SavedPlan& plan, int frame, const CacheFolder& folder) {
     FrameManifest manifest{frame, plan.request.grouping.plan_hash, {}, {}};
     for (const auto& [path, input] : folder.inputs->known) manifest.inputs[normal_path(path)] = input;
-    for (const CacheCost& cost : folder.costs) // stamps as they are now: another run may have written a file again
+    for (const CacheCost& cost : folder.costs) // current stamps: another run may have rewritten a file
         if (!cost.file.empty())
             manifest.files[cost.file] = {stamp_of(folder.folder / cost.file), folder.files.at(cost.file).hash};
     return manifest;
@@ -84,7 +84,7 @@ std::vector<CacheCost> prepare_for_parts(const Scene& scene, const SavedPlan& pl
     hash_fog(scene, request, frame, inputs);
     if (!inputs.known.empty()) note_cost(folder.get(), "hashing volumes", steady_seconds() - start, CostKind::cached);
 
-    // Shares nothing with other frames: what they have in common is found in the folder, and so in every manifest.
+    // Shares nothing with other frames: data in common is looked up in the folder, and so listed in every manifest.
     const Snapshot snapshot = make_snapshot(scene, moments_of(scene, request, frame), nullptr, request.missing, folder);
     prepare_files(*plan.plan.mode, view_of(scene, request, plan.plan.settings, frame), snapshot, plan.plan.settings);
     check_unchanged(*folder);

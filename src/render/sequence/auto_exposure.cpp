@@ -14,10 +14,10 @@
 namespace tyndall {
 namespace {
 constexpr int small_side = 64;       // pixels along the longer side
-constexpr double average_to = 0.15;  // what the mean in stops of the picture would be brought to, alone,
-constexpr double highlight_to = 1.6; // and what its highlights: the exposure is half way between
+constexpr double average_to = 0.15;  // target for the log-average luminance
+constexpr double highlight_to = 1.6; // target for the highlights: the exposure is halfway between the two, in stops
 constexpr double highlights = 0.98;  // share of the lit pixels that are darker
-constexpr float black = 1e-4f;       // of the highlights: darker pixels do not count
+constexpr float black = 1e-4f;       // relative to the highlights: darker pixels are ignored
 
 Settings small_settings(const RenderRequest& request, int orders) {
     const Settings& asked = request.settings;
@@ -38,7 +38,7 @@ RenderRequest small_request(const Scene& scene, const RenderRequest& request) {
     small.camera = request.camera, small.background = request.background;
     small.resolution = glm::max(ivec2(glm::round(scale * vec2(whole))), ivec2(8));
     small.exr.layers.clear();
-    small.shutter = Shutter{}; // a still is as bright
+    small.shutter = Shutter{}; // motion blur does not change the brightness
     return small;
 }
 
@@ -87,7 +87,7 @@ double automatic_exposure(const Scene& scene, const RenderRequest& request, int 
             if (exposure) darkest = std::min(*exposure, darkest.value_or(*exposure));
             previous = &snapshot;
         } catch (const Error&) {
-            continue; // whoever renders this frame is told
+            continue; // reported when this frame is rendered
         }
     }
     return darkest.value_or(0.0);

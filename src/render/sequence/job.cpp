@@ -17,7 +17,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int largest_side = 16384; // what read_exr takes back
+constexpr int largest_side = 16384; // the largest that read_exr accepts
 
 void check_picture(const Scene& scene, const RenderRequest& request) {
     const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
@@ -29,8 +29,7 @@ void check_picture(const Scene& scene, const RenderRequest& request) {
         fail(ExitCode::usage, "crop", "it has to lie inside the image and hold a pixel");
 }
 
-// Names, directories and leftovers.
-// Without links and dots, as far as the file system lets one look.
+// The path without links and dots, as far as the file system can be read.
 std::filesystem::path plain_path(const std::filesystem::path& path) {
     std::error_code error;
     const std::filesystem::path plain = std::filesystem::weakly_canonical(path, error);
@@ -115,7 +114,7 @@ bool wants_layer(const RenderRequest& request, std::string_view layer) {
 }
 
 Shutter shutter_of(const Scene& scene, const RenderRequest& request) {
-    // One that was moved by hand is none of the scene's, and what it sees is a still.
+    // A camera moved by hand is not one of the scene's and has no shutter of its own.
     const bool own =
         request.camera.empty() || std::ranges::count(scene.cameras, request.camera, &CameraSource::name) > 0;
     if (!own) return request.shutter.value_or(Shutter{});
@@ -131,10 +130,10 @@ FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int fr
     const int camera = find_camera(scene, request.camera);
     if (!changes_while_open(scene, camera, shutter)) return frame_moments(scene, frame, shutter, 1);
     const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
-    // A mode that is yet to be chosen may be one of those.
+    // A mode that is not chosen yet may be one that remembers.
     const auto keeps_none = [&](const Mode& mode) { return mode.name == request.mode && !mode.remembers; };
     const bool keeps_pictures = std::ranges::none_of(modes(), keeps_none);
-    const int finer = request.target_error > 0 ? 2 : 1; // what half of them leave is part of the error asked for
+    const int finer = request.target_error > 0 ? 2 : 1; // the error left by half of them is part of the target error
     const int count = request.time_samples > 0
                           ? request.time_samples
                           : usual_moments(scene, camera, size, frame, shutter, keeps_pictures, finer);

@@ -1,4 +1,4 @@
-// Frames are loaded, unless what an earlier run left of them is kept.
+// The loading stage: loads frames, unless those of an earlier run can be kept.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/io/frames.h"
@@ -21,7 +21,7 @@ WantedFrame wanted_frame(const Pipeline& pipeline, const Work& work) {
             pipeline.channels, work.hash};
 }
 
-// Keeps a frame that is already there and right; its PNG is made anew, since that carries no hash.
+// Keeps a frame that is already finished; its PNG is written again, since it has no hash.
 bool keep(Pipeline& pipeline, Work& work) {
     std::string why;
     if (is_part(pipeline.request.grouping)) {
@@ -42,7 +42,7 @@ bool keep(Pipeline& pipeline, Work& work) {
     return true;
 }
 
-// The snapshot of a frame, sharing with the one before; of the first one perhaps the one that is there.
+// The snapshot of a frame, which shares data with the one before; the first one may be loaded already.
 LoadedFrame loaded(Pipeline& pipeline, int frame, const Snapshot* previous) {
     LoadedFrame first = std::exchange(pipeline.first, {});
     if (first.snapshot.scene == &pipeline.scene && first.snapshot.frame == frame) return first;

@@ -1,4 +1,4 @@
-// A frame on its way through the stages of a sequence: loaded, rendered, written. For the files of this folder only.
+// The pipeline of a sequence: each frame is loaded, rendered and written. For the files of this folder only.
 #pragma once
 #include "render/frame/part.h"
 #include "render/sequence/sequence.h"
@@ -18,8 +18,8 @@ struct Work {
     View view;
     Snapshot snapshot;
     Layers layers;
-    FramePart part{};               // instead of layers, where one was asked for
-    std::optional<RenderPlan> by{}; // rendered by, where that is not the sequence's
+    FramePart part{};               // instead of layers, if a part is requested
+    std::optional<RenderPlan> by{}; // what it was rendered with, if not the sequence's plan
 };
 
 // What the stages share.
@@ -30,25 +30,25 @@ struct Pipeline {
     Progress& progress;
     std::atomic<bool>& cancel;
     std::vector<std::string> channels; // of every file
-    LoadedFrame first;                 // of the sequence, until it is taken
+    LoadedFrame first;                 // the sequence's first frame, until it is taken
     std::shared_ptr<FileHashes> files = first.files;
-    size_t next = 0; // index of the first frame not yet looked at
+    size_t next = 0; // index of the next frame to load
     RenderReport report{};
-    std::mutex reporting{};       // held to change the report
+    std::mutex reporting{};       // protects the report
     std::atomic<int> settled = 0; // frames rendered or kept
     int rendered = 0;             // frames
 };
 
-// The next frame that has to be rendered; kept ones on the way are reported.
+// Loads the next frame that has to be rendered; reports the ones kept on the way.
 std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous);
 void render(Pipeline& pipeline, Work& work);
 
 void say(const Pipeline& pipeline, const Work& work, const std::string& what);
 void report_frame(Pipeline& pipeline, const Work& work);
 
-// The PNG beside a frame's EXR.
+// Writes the PNG next to a frame's EXR.
 void write_picture(const Pipeline& pipeline, const Image<vec3>& color, FrameReport& report);
 
-// The error again, with its frame before its place and the reason kept whole.
+// Throws the error again, with the frame in front of its location and the reason unchanged.
 [[noreturn]] void fail_in_frame(int frame, const Error& error);
 }

@@ -24,7 +24,7 @@ std::string number(double value) { return formatted("%.9g", value); }
 std::string numbers(vec3 v) { return number(v.x) + "," + number(v.y) + "," + number(v.z); }
 std::string pair_text(ivec2 v, const char* between) { return std::to_string(v.x) + between + std::to_string(v.y); }
 
-// The scene's own files as they were when it was loaded; sequences of volumes and gobos count by frame.
+// The scene's own files as they were when it was loaded; sequences of volumes and gobos are hashed by frame.
 std::string scene_text(const Scene& scene) {
     std::string text;
     for (const InputFile& input : scene.inputs) text += "input=" + input.hash + "\n";
@@ -69,7 +69,7 @@ std::string joined_layers(const ExrOptions& options) {
     return text.empty() ? "none" : text;
 }
 
-// All that tyndall render is told but scene, output, frames and picture size.
+// All options of tyndall render except scene, output, frames and image size.
 std::string option_text(const RenderRequest& request, const Settings& settings) {
     std::string text = " --seed " + std::to_string(request.seed) + " --aov " + joined_layers(request.exr);
     if (request.exr.full_float) text += " --float";
@@ -89,7 +89,7 @@ std::string option_text(const RenderRequest& request, const Settings& settings) 
         text += " --light-units " + light_unit_names[static_cast<size_t>(request.light_units)];
 
     const Settings usual = settings_for(request.quality);
-    // How many samples are usual depends on the mode: they are always said.
+    // The default number of samples depends on the mode, so it is always stated.
     for (const SettingRow& row : setting_rows())
         if (row.get(settings) != row.get(usual) || (row.name == "pixel.samples" && !has_goal(request)))
             text += " --set " + row.name + "=" + row.get(settings);
@@ -111,8 +111,8 @@ std::filesystem::path common_folder(const std::filesystem::path& a, const std::f
     return common;
 }
 
-// As seen from the working folder, or else from the deepest folder that holds both; else folder and name of each: what
-// stands above them is no business of whoever gets the image.
+// Paths relative to the working folder, or else to the deepest folder that holds both; otherwise each one's folder and
+// name. Folders above them are private and stay out of the image.
 Names names_of(const RenderRequest& request) {
     std::error_code ignored;
     const std::filesystem::path here = std::filesystem::current_path(ignored);
@@ -158,7 +158,7 @@ void hash_fog(const Scene& scene, const RenderRequest& request, int frame, FileH
 std::string frame_hash(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
                        FileHashes& files) {
     const double seconds = moment_of(scene, view.frame).seconds;
-    const Names names{request.scene_file.filename(), "out.####.exr"}; // of any folder and output
+    const Names names{request.scene_file.filename(), "out.####.exr"}; // independent of folder and output
     std::string text = "version=" TYNDALL_VERSION "\n" + command_text(names, request, plan, view) + "\n" +
                        settings_text(plan.settings);
     text += "\nrate=" + number(scene.frame_rate) + "\ncamera=" + camera_text(view.camera) + "\n";

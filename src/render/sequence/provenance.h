@@ -1,4 +1,4 @@
-// What a frame is made from, as a hash to compare and attributes to keep.
+// How a frame was made: a hash to compare and attributes to keep.
 #pragma once
 #include "base/io/file_hashes.h"
 #include "render/sequence/job.h"
@@ -19,14 +19,14 @@ void hash_fog(const Scene& scene, const RenderRequest& request, int frame, FileH
 std::string frame_hash(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
                        FileHashes& files);
 
-// The command that makes all frames asked for, ready for a shell. What stands in no file is not in it: unsaved edits,
-// a camera moved by hand.
+// The shell command that renders all requested frames, without anything that is in no file: unsaved edits, a camera
+// moved by hand.
 std::string command_line(const RenderRequest& request);
 
-// How to make the frame again: files are named without the folders above those of scene and output.
+// Attributes to render the frame again; files are named without the folders above those of scene and output.
 Provenance provenance_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const View& view,
                          const std::string& hash, const FrameStats& stats);
 
-// Takes samples, noise and what was not finite back from the attributes of a picture.
+// Reads samples, noise and the number of non-finite samples back from an image's attributes.
 void read_noise(const std::map<std::string, std::string>& attributes, FrameStats& stats);
 }

@@ -1,4 +1,4 @@
-// A loaded frame is rendered: by a number of samples, to an error or a time, or the part of it that was asked for.
+// The rendering stage: a frame, or the requested part of it, with a number of samples or to a target error or time.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/io/cache_folder.h"
@@ -17,24 +17,24 @@
 
 namespace tyndall {
 namespace {
-// Writing is likely to take so long.
+// Predicted seconds to write a frame.
 double seconds_to_write(const RenderRequest& request, const View& view) {
     const double pixels = static_cast<double>(view.size.x) * view.size.y;
     return 0.01 + pixels * (request.png ? 1e-6 : 5e-7);
 }
 
-// Until the next frame has to be rendered; 0 where there is no limit. What earlier frames left, it may use.
+// Seconds until the next frame has to be rendered; 0 if there is no limit. Includes what earlier frames left over.
 double seconds_left(const Pipeline& pipeline, const View& view) {
     const RenderRequest& request = pipeline.request;
     if (request.time_budget == 0) return 0;
     const double end = request.started + request.time_budget * (pipeline.rendered + 1);
-    constexpr double safe = 0.96; // something may hold the process up
+    constexpr double safe = 0.96; // margin for delays of the process
     return std::max(safe * (end - steady_seconds() - seconds_to_write(request, view)), 1e-3);
 }
 
-// Shows the mode the frames before this one, so that a frame depends on nothing but the scene and its number. Before
-// the scene's first frame time stands still. Each shares with the last; the first with what the sequence's frame before
-// kept.
+// Runs the mode on the frames before this one, so that a frame depends only on the scene and its number. Before the
+// scene's first frame, time stands still. Each frame shares data with the one before; the first shares what the
+// sequence's previous frame kept.
 void warm_up(const Pipeline& pipeline, Work& work, History& history) {
     const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
     Snapshot previous = work.snapshot;
@@ -51,7 +51,7 @@ void warm_up(const Pipeline& pipeline, Work& work, History& history) {
     work.snapshot.cache_before = previous.cache;
 }
 
-// What a frame will take, where that is long enough to be told.
+// Reports the predicted time of a frame, if it is long.
 void say_forecast(const Pipeline& pipeline, const Work& work, double seconds) {
     constexpr double long_work = 10;
     if (seconds < long_work) return;
@@ -60,7 +60,7 @@ void say_forecast(const Pipeline& pipeline, const Work& work, double seconds) {
     say(pipeline, work, "will take about " + seconds_text(seconds));
 }
 
-// Whether a technique that was chosen for the first frame missed the target.
+// Whether a technique chosen for the first frame missed the target.
 bool missed_by_plan(const RenderPlan& plan, const RenderRequest& request, const FrameStats& stats) {
     return plan.wanted && plan.mode != &main_mode() && request.time_budget == 0 && stats.integrator &&
            stats.error()->bound > request.target_error;
@@ -81,7 +81,7 @@ void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
     stats.add_lost(missed);
 }
 
-// The part of the frame's samples that was asked for, from its last checkpoint on.
+// Renders the requested part of the frame's samples, continuing from its last checkpoint.
 void render_own_part(const Pipeline& pipeline, const FrameOptions& options, Work& work) {
     const RenderRequest& request = pipeline.request;
     const Mode& mode = *pipeline.plan.mode;

@@ -1,4 +1,4 @@
-// Frames are judged by content alone: not by date, nor by a header's word.
+// Frames are judged by their content, not by date and not by the header alone.
 #include "render/sequence/resume.h"
 
 #include "base/error.h"

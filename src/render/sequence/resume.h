@@ -13,6 +13,7 @@ struct WantedFrame {
     std::string hash;
 };
 
-// The frame when every pixel decodes and all is as wanted; else nothing, and `why` says why (empty: there is no file).
+// Reads the frame if every pixel decodes and everything is as wanted; otherwise none, with the reason in `why` (empty:
+// there is no file).
 std::optional<ExrFile> finished_frame(const std::filesystem::path& file, const WantedFrame& wanted, std::string& why);
 }

@@ -46,7 +46,7 @@ void report_frame(Pipeline& pipeline, const Work& work) {
 }
 
 namespace {
-// What is known of the error, its parts and what was asked for.
+// The error, its parts and the target, as text.
 std::string error_text(const FrameStats& stats, const RenderRequest& request) {
     if (!stats.noise) return {};
     std::string text = stats.is_noise_alone() ? ", noise " : ", error ";
@@ -90,7 +90,7 @@ void write(Pipeline& pipeline, Work& work) {
     say(pipeline, work, text);
 }
 
-// Runs `body` and keeps what it throws for later, so that the stage beside it can end in peace.
+// Runs `body` and returns what it throws, so that the stages beside it can finish.
 template<class Body> std::exception_ptr caught(const Body& body) {
     try {
         body();
@@ -114,7 +114,7 @@ void run(Pipeline& pipeline) {
         if (render_error && pipeline.cancel) return;
         if (render_error) std::rethrow_exception(render_error);
 
-        // The fog and triangles of a finished frame are not needed any more, unless the next one shares them.
+        // Releases the fog and triangles of the finished frame, unless the next one shares them.
         current->snapshot = {};
         rendered = std::move(current);
         current = std::move(next);
@@ -126,7 +126,7 @@ void run(Pipeline& pipeline) {
     if (rendered) write(pipeline, *rendered);
 }
 
-// Over the budgets of all frames, where that is more than a hitch or there was no time for a second ray per pixel.
+// Seconds over the budgets of all frames; 0 for a slight delay, unless there was no time for a second ray per pixel.
 double seconds_late(const RenderRequest& request, const RenderReport& report) {
     const double all = request.time_budget * static_cast<double>(request.frames.size());
     const double late = all > 0 ? steady_seconds() - request.started - all : 0;

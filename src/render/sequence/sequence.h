@@ -1,4 +1,4 @@
-// Frames of a scene to files: resumable, atomic, with progress and statistics.
+// Renders frames of a scene to files: resumable, atomic, with progress and statistics.
 #pragma once
 #include "base/io/progress.h"
 #include "modes/limitation.h"
@@ -12,21 +12,21 @@
 #include <vector>
 
 namespace tyndall {
-// A frame of a sequence, loaded to be looked at before it is rendered.
+// A frame of a sequence, loaded for inspection before it is rendered.
 struct LoadedFrame {
     Snapshot snapshot;
-    double seconds = 0;                                                 // it took
-    std::shared_ptr<FileHashes> files = std::make_shared<FileHashes>(); // of its fog, before that was read
+    double seconds = 0;                                                 // taken to load
+    std::shared_ptr<FileHashes> files = std::make_shared<FileHashes>(); // of its fog files, taken before reading them
 };
 
-// Loads the first frame asked for, to look at it before the others. What stands still is shared with `previous`, when
-// that is a frame of the same scene. Throws Error.
+// Loads the first requested frame for inspection. Static data is shared with `previous`, if that is a frame of the same
+// scene. Throws Error.
 LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, const Snapshot* previous = nullptr);
 
 struct FrameReport {
     int frame = 0;
     std::string file;
-    std::string mode{}; // that rendered it, where that is not the sequence's
+    std::string mode{}; // that rendered it, if not the sequence's
     bool kept = false;  // by resume; nothing was rendered, noise and samples are those of the file
     double load_seconds = 0, seconds = 0, write_seconds = 0;
     std::optional<double> exposure{}; // stops, of its PNG
@@ -35,21 +35,22 @@ struct FrameReport {
 
 struct RenderReport {
     std::vector<FrameReport> frames; // complete ones, in the order of the request
-    Limitations limitations;         // of the mode in the first frame, where whoever asked looked for them
+    Limitations limitations;         // of the mode in the first frame, if the caller checked them
     std::vector<std::string> notes;
-    int missed = 0;         // frames that are further off than the target error
-    double late = 0;        // seconds that all frames took over their time budgets
+    int missed = 0;         // frames whose error bound exceeds the target error
+    double late = 0;        // seconds over the time budgets of all frames
     bool cancelled = false; // stopped early: the frames above are complete, no file is partial
     double seconds = 0;
     uint64_t non_finite = 0, peak_memory_bytes = 0;
 };
 
-// Renders the frames asked for; while one renders, the next is loaded and the last is written. `first` (may be null)
-// holds the first frame, which is taken out of it and not loaded again. Output names are tested and
-// leftovers of killed runs removed before anything else. `progress` runs from 0 to the number of frames. A PNG lies
-// beside each EXR, same name. With `resume` a frame is kept when its file decodes to the last pixel, has the wanted
-// channels and size, and its `tyndall:hash` equals the one wanted. Throws Error; one of a frame names it, and frames
-// finished before it are written. An exposure of PNGs that has to be measured and is not in the plan is measured first.
+// Renders the requested frames; while one renders, the next is loaded and the previous one is written. `first` (may be
+// null) holds the first frame, which is taken from it instead of being loaded again. Before anything else, output names
+// are checked and leftovers of killed runs removed. `progress` runs from 0 to the number of frames. A PNG is next to
+// its EXR and has the same name. With `resume` a frame is kept if its file decodes completely, has the expected
+// channels and size, and its `tyndall:hash` equals the expected one. Throws Error; one of a frame names it, and frames
+// finished before it are written. If the exposure of PNGs has to be measured and is not in the plan, it is measured
+// first.
 RenderReport render_sequence(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
                              Progress& progress, std::atomic<bool>& cancel, LoadedFrame* first = nullptr);
 

@@ -1,4 +1,4 @@
-// What is behind everything.
+// The background of a scene file.
 #include "base/io/file.h"
 #include "scene/file/scene_file.h"
 #include "scene/images/image_file.h"
@@ -18,7 +18,7 @@ void read_image(const Field& image, Scene& scene, Background& map) {
     if (!note.empty()) scene.warnings.push_back(place + ": " + note);
 }
 
-// What only images have.
+// Fields of image backgrounds only.
 void read_projection(const Field& field, Background& background) {
     background.lat_long = field.json->string_or("projection", "plate") == "lat_long";
     if (const Field intensity = field.member("intensity")) background.intensity = keyed_number(intensity);

@@ -14,7 +14,7 @@ void check_aim(const CameraSource& camera, const Field& field) {
         if (up == vec3(0)) refuse(field.member("up"), "has no direction: its length is 0");
 }
 
-// The lens around the pinhole: fields that a camera of the glTF may be given too.
+// The lens: fields that may also be given for a camera of the glTF.
 void read_lens(const Field& field, CameraSource& camera) {
     const Field aperture = field.member("aperture_radius"), focus = field.member("focus_distance");
     const Field blades = field.member("aperture_blades"), turn = field.member("blade_rotation");
@@ -30,7 +30,7 @@ void read_lens(const Field& field, CameraSource& camera) {
     if (turn) camera.blade_turn = keyed_degrees(turn);
 }
 
-// Named curves, or the light that gets through at even times.
+// A named curve, or transmissions at equally spaced times.
 std::vector<float> shutter_curve(const Field& field) {
     if (field.json->kind == Json::Kind::string)
         return field.json->string == "triangle" ? std::vector<float>{0, 1, 0} : std::vector<float>{};
@@ -50,7 +50,7 @@ void read_shutter(const Field& field, CameraSource& camera) {
     if (const Field curve = field.member("curve")) shutter.curve = shutter_curve(curve);
 }
 
-// What a camera of the glTF may be given too.
+// What may also be given for a camera of the glTF.
 void read_exposing(const Field& field, CameraSource& camera) {
     read_lens(field, camera);
     read_shutter(field.member("shutter"), camera);
@@ -93,7 +93,8 @@ int index_of(const Scene& scene, std::string_view name) {
     return found == names.end() ? -1 : static_cast<int>(found - names.begin());
 }
 
-// The camera of the glTF that an entry puts a lens or a shutter on: it has that name, and the entry says nothing else.
+// The camera of the glTF to which an entry adds a lens or a shutter: it has the same name, and the entry has no other
+// fields.
 CameraSource* under_lens(const Field& field, Scene& scene) {
     const int known = index_of(scene, field.json->string_or("name", ""));
     if (known < 0 || scene.cameras[static_cast<size_t>(known)].node < 0) return nullptr;

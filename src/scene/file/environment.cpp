@@ -1,4 +1,4 @@
-// Light from all around: an entry among the lights, with a map of its own or the scene's background.
+// The environment light: an entry among the lights, with its own map or the scene's background.
 #include "scene/file/scene_file.h"
 
 namespace tyndall {
@@ -19,7 +19,7 @@ bool has_map(const Field& field) {
     return std::ranges::any_of(map_fields, given);
 }
 
-// What an environment shows where nothing is in the way, unless the scene has a background.
+// Makes a visible environment the background, unless the scene has one.
 void show(const Field& field, const EnvironmentSource& environment, Background& background) {
     const Field visible = field.member("visible");
     const bool wanted = !visible || field.json->boolean_or("visible", true);
@@ -46,7 +46,7 @@ EnvironmentSource read_one(const Field& field, const Scene& scene) {
     return environment;
 }
 
-// The scene's background as a light.
+// Uses the scene's background as the environment map.
 void share_background(const Field& field, const Scene& scene, EnvironmentSource& environment) {
     if (!scene.background.stated)
         refuse(field, "an environment needs a color, a sky or an image, or the scene's background");

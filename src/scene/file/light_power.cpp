@@ -1,4 +1,4 @@
-// How bright a light of a scene file is and where its light goes: units, IES profiles, gobos.
+// Intensity and its directional distribution for lights of a scene file: units, IES profiles, gobos.
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/text.h"
@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-// What a unit of the file means for a kind of light.
+// The unit that a name of the file means for a kind of light.
 LightUnit unit_named(const Field& unit, const LightSource& light) {
     const std::string& name = unit.json->string;
     const LightTraits& kind = traits_of(light.kind);

@@ -8,7 +8,7 @@ LightKind kind_named(std::string_view name) {
     return static_cast<LightKind>(std::ranges::find(light_kinds, name, &LightTraits::name) - light_kinds);
 }
 
-// Fields that mean something only for some kinds of light.
+// Refuses fields that do not apply to the light's kind.
 void check_fields(const Field& field, const LightSource& light) {
     const LightTraits& kind = traits_of(light.kind);
     const bool aimed = kind.aimed || light.profile || field.member("ies");
@@ -37,7 +37,7 @@ void check_fields(const Field& field, const LightSource& light) {
         refuse(target, "and direction exclude each other");
 }
 
-// Where the light is and shines: given here, or left with the node of the glTF.
+// Position and aim of the light: given here, or left to the node of the glTF.
 void read_placement(const Field& field, dvec3 origin, LightSource& light) {
     const Field position = field.member("position"), target = field.member("target");
     const Field direction = field.member("direction");
@@ -60,7 +60,7 @@ void read_placement(const Field& field, dvec3 origin, LightSource& light) {
         if (glm::dot(value, value) == 0) refuse(target ? target : direction, "leaves the light without a direction");
 }
 
-// Of a light that is a face.
+// Fields of area lights.
 void read_face(const Field& field, LightSource& light) {
     const auto size = [&](const char* name, Keyed<float>& value) {
         const Field given = field.member(name);

@@ -1,4 +1,4 @@
-// Fog of a scene file.
+// The media of a scene file.
 #include "base/error.h"
 #include "base/io/file.h"
 #include "scene/file/media_grids.h"
@@ -22,12 +22,12 @@ void read_transform(const Field& field, dvec3 origin, MediumSource& medium) {
         medium.rotate = keyed_vector(rotate), medium.rotation = rotation_of(medium.rotate);
     const Field scale = field.member("scale");
     if (!scale) return;
-    medium.scale = keyed_color(scale); // one number or three, as a colour
+    medium.scale = keyed_color(scale); // one number or three, like a color
     for (const vec3 value : medium.scale.values)
         if (value.x * value.y * value.z == 0) refuse(scale, "must not be 0: the fog would have no volume");
 }
 
-// `origin` is that of a medium without a transform, whose own space is then counted from there.
+// `origin` is the scene's origin for a medium without a transform, whose own space is then relative to it.
 void read_bounds(const Field& field, dvec3 origin, MediumSource& medium) {
     const Field bounds = field.member("bounds");
     if (!bounds) return;
@@ -37,7 +37,7 @@ void read_bounds(const Field& field, dvec3 origin, MediumSource& medium) {
             refuse(bounds.member("high").item(axis), "must be greater than low");
 }
 
-// A number or a color, of which grey is a number.
+// A number or a color; a gray color is a number.
 void read_extinction(const Field& field, MediumSource& medium) {
     const Keyed<vec3> channels = keyed_color(field);
     medium.extinction.times = channels.times, medium.extinction.interpolation = channels.interpolation;
@@ -48,7 +48,7 @@ void read_extinction(const Field& field, MediumSource& medium) {
     if (!std::ranges::all_of(channels.values, grey)) medium.channel_extinction = channels;
 }
 
-// What the file does not say stays what it was: the defaults of the recipe or the volume.
+// Fields that are absent keep their values: the defaults of the recipe or the volume.
 void read_optics(const Field& field, MediumSource& medium, Scene& scene) {
     if (const Field extinction = field.member("extinction")) read_extinction(extinction, medium);
     if (const Field albedo = field.member("albedo")) medium.albedo = keyed_color(albedo);
@@ -60,7 +60,7 @@ void read_optics(const Field& field, MediumSource& medium, Scene& scene) {
 void read_noise(const Field& field, MediumSource& medium, Scene& scene) {
     const Field recipe = field.member("recipe");
     const std::filesystem::path path = named_file(recipe, scene);
-    add_input(scene, path, read_file(path)); // before it is read: a change in between cannot keep old frames
+    add_input(scene, path, read_file(path)); // before parsing: a change in between must not keep outdated frames
     medium.recipe = read_recipe(path);
     medium.extinction = medium.recipe->extinction;
     medium.albedo = medium.recipe->albedo;
@@ -69,7 +69,7 @@ void read_noise(const Field& field, MediumSource& medium, Scene& scene) {
     if (const Field wind = field.member("wind")) medium.recipe->wind = read_vector(wind);
 }
 
-// One or three numbers of a metadata text such as "0.9" or "[0.9, 0.8, 0.7]"; empty when there are none.
+// The numbers in a metadata text such as "0.9" or "[0.9, 0.8, 0.7]"; empty if there are none.
 std::vector<float> numbers_in(std::string_view text) {
     std::vector<float> numbers;
     while (!text.empty() && numbers.size() < 4) {
@@ -82,7 +82,8 @@ std::vector<float> numbers_in(std::string_view text) {
     return numbers;
 }
 
-// Optics a bake wrote into the file's metadata. Values no scene could state are left out.
+// Reads the optics that tyndall bake wrote into the file's metadata and returns whether it has an extinction. Ignores
+// values outside the ranges of scene files.
 bool read_metadata(const std::filesystem::path& path, MediumSource& medium) {
     bool extinction = false;
     for (const auto& [name, text] : vdb_metadata(path)) {
@@ -110,7 +111,7 @@ void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
         if (medium.blends && medium.sequence.files.empty()) refuse(blend, "is of numbered files, and this is one");
     }
 
-    // The first file speaks for all.
+    // The first file's metadata applies to the whole sequence.
     if (field.member("extinction") && field.member("albedo") && field.member("g")) return;
     const int first = medium.sequence.files.empty() ? 0 : medium.sequence.files.front() - medium.sequence.offset;
     const auto path = sequence_file(medium.sequence, first, MissingFrame::hold);

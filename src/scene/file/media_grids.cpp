@@ -34,7 +34,7 @@ ValueMap value_map(const Field& field) {
     return map;
 }
 
-// A property given by a name or an object; from the medium's own file unless it names another.
+// A property given by a grid's name or an object; from the medium's own file unless the object names another.
 GridSource grid_source(const Field& field, const char* usual, const MediumSource& medium, Scene& scene) {
     GridSource source{medium.sequence, {}, {}};
     if (field.json->kind == Json::Kind::string) {
@@ -89,14 +89,14 @@ BlackbodySource blackbody_source(const Field& field, const MediumSource& medium,
     return source;
 }
 
-// A recipe has its temperature from its fire.
+// A recipe takes its temperature from its fire.
 void check_recipe(const Field& field, const Field& blackbody, const FogRecipe& recipe, Scene& scene) {
     if (blackbody && !recipe.fire) refuse(blackbody, "needs a recipe with a \"fire\"");
     if (!blackbody && recipe.fire)
         warn(scene, field.place() + ": its fire gives no light without \"blackbody\": {\"convention\": \"kelvin\"}");
 }
 
-// What one member says only together with another.
+// Refuses members that mean nothing without another member.
 void check_together(const Field& grids, const Field& blackbody) {
     const Field temperature = grids ? grids.member("temperature") : Field(),
                 flame = grids ? grids.member("flame") : Field();
@@ -114,7 +114,7 @@ void read_grids(const Field& field, MediumSource& medium, Scene& scene) {
     else
         check_together(grids, blackbody);
     if (grids) {
-        const MediumSource usual = medium; // of whose file the other properties are, wherever the density is from
+        const MediumSource usual = medium; // whose file is the default, even if the density comes from another
         const auto read = [&](const char* name, const char* grid, std::optional<GridSource>& source) {
             if (const Field property = grids.member(name)) source = grid_source(property, grid, usual, scene);
         };

@@ -10,10 +10,10 @@
 
 namespace tyndall {
 namespace {
-constexpr float hottest = 2000;  // kelvin, of a temperature that is not in kelvin: the yellow of a wood fire
-constexpr float in_kelvin = 500; // values beyond are taken for it
+constexpr float hottest = 2000;  // kelvin, for the maximum of a grid that is not in kelvin: the yellow of a wood fire
+constexpr float in_kelvin = 500; // grids with larger values are taken to be in kelvin
 
-// The first grid that looks like something and holds more than 0.
+// The first non-empty grid of a role with values above 0.
 const VdbGridInfo* grid_like(const VdbInfo& info, GridRole role) {
     const auto found = std::ranges::find_if(info.grids, [&](const VdbGridInfo& grid) {
         return grid.role == role && grid.active_voxels > 0 && grid.maximum > 0;
@@ -21,14 +21,14 @@ const VdbGridInfo* grid_like(const VdbInfo& info, GridRole role) {
     return found == info.grids.end() ? nullptr : &*found;
 }
 
-// A number to three digits, without an exponent where people write none.
+// A number to three significant digits, in the usual notation without exponents.
 std::string digits(float value) {
     return json_number(parsed<float>(formatted("%.3g", static_cast<double>(value))).value_or(0));
 }
 
 std::string member(const std::string& name, const std::string& value) { return quote_json(name) + ": " + value; }
 
-// A color of three grids goes by what their names have in common.
+// A color in three grids is named by the common part of their names.
 std::string color_name(const VdbGridInfo& grid) {
     const size_t dot = grid.name.rfind('.');
     return quote_json(grid.ranges.empty() && dot != std::string::npos ? grid.name.substr(0, dot) : grid.key);
@@ -39,7 +39,7 @@ std::string temperature_text(const VdbGridInfo& grid) {
     return "{" + member("grid", quote_json(grid.key)) + ", " + member("scale", digits(hottest / grid.maximum)) + "}";
 }
 
-// The grid of the density, or a level set, and what is said of it.
+// The density grid, or a level set with the width of its falloff.
 std::string density_text(const VdbGridInfo& grid) {
     if (grid.role != GridRole::level_set) return quote_json(grid.key);
     return "{" + member("grid", quote_json(grid.key)) + ", " + member("width", digits(0.5f * grid.background)) + "}";
@@ -62,7 +62,7 @@ float usual_extinction(const VdbGridInfo& fog) {
 std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {
     const VdbGridInfo *density = density_of(info), *color = grid_like(info, GridRole::color),
                       *temperature = grid_like(info, GridRole::temperature), *flame = grid_like(info, GridRole::flame);
-    if (!temperature) temperature = std::exchange(flame, nullptr); // hot where it is bright
+    if (!temperature) temperature = std::exchange(flame, nullptr); // a flame grid serves as the temperature
     const VdbGridInfo* emission = temperature ? nullptr : grid_like(info, GridRole::emission);
     if (!density && !temperature && !emission) return {};
     const bool dims = density && density->maximum > 0;

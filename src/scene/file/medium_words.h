@@ -1,4 +1,4 @@
-// What to write in a scene file for the grids of a volume file.
+// Scene file entries for the grids of a volume file.
 #pragma once
 #include "volume/vdb/vdb.h"
 
@@ -6,11 +6,10 @@
 #include <string>
 
 namespace tyndall {
-// An entry of "media" that takes each grid as what it looks like: density, color, temperature and flame, or emission,
-// and velocity.
-// Where there is no density, nothing is dimmed; empty where no grid is of use.
+// An entry of "media" with the guessed role of each grid: density, color, temperature and flame, or emission, and
+// velocity. The extinction is 0 without a density grid; empty if no grid is usable.
 std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info);
 
-// Extinction at which the longest way through the densest fog lets 2 % of the light pass, 1/m.
+// Extinction at which 2 % of the light passes along the longest path through fog of maximum density, 1/m.
 float usual_extinction(const VdbGridInfo& fog);
 }

@@ -1,5 +1,4 @@
-// Objects of the glTF as a scene file names them: which of them cast shadows or hold out, and the links of lights to
-// them.
+// glTF objects that a scene file refers to: shadow casting, holdouts and light linking.
 #include "base/text.h"
 #include "scene/file/scene_file.h"
 
@@ -7,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-// Whether a node is another or stands below it.
+// Whether a node is `top` or one of its descendants.
 bool is_below(const Scene& scene, int node, int top) {
     while (node >= 0 && node != top) node = scene.nodes[static_cast<size_t>(node)].parent;
     return node == top;
@@ -20,7 +19,7 @@ std::vector<int> instances_below(const Scene& scene, int top) {
     return found;
 }
 
-// Of nodes that hold a mesh, and of meshes.
+// Names of nodes that have a mesh, and of meshes.
 std::vector<std::string> object_names(const Scene& scene) {
     std::vector<std::string> names;
     for (const Instance& instance : scene.instances) {

@@ -6,9 +6,9 @@
 
 namespace tyndall {
 namespace {
-constexpr double far_out = 64; // times as far from the world's origin as the picture is deep
+constexpr double far_out = 64; // smallest ratio of distance from the world's origin to size of the view that is far
 
-// What is looked at: where, and how large it is.
+// What the camera views: its position and size.
 struct Sight {
     dvec3 place;
     double size;
@@ -16,7 +16,8 @@ struct Sight {
 
 bool is_placed(const Field& camera) { return camera.member("position") && camera.member("target"); }
 
-// The entry that read_cameras() makes the default camera; empty when that is one of the glTF's, with a lens or without.
+// The entry that read_cameras() makes the default camera; empty if that is a camera of the glTF, with or without an
+// added lens.
 Field camera_field(const Field& root) {
     if (!root) return {};
     const Field chosen = root.member("camera"), cameras = root.member("cameras");
@@ -52,7 +53,7 @@ dvec3 far_origin(const Field& root, const Scene& scene) {
     const dvec3 away = glm::abs(sight->place);
     if (!(std::max({away.x, away.y, away.z}) > far_out * sight->size)) return dvec3(0);
 
-    // Round numbers, so that adding it back loses nothing.
+    // A multiple of a power of two, so that adding it back is exact.
     const double step = std::exp2(std::ceil(std::log2(sight->size)));
     return glm::round(sight->place / step) * step;
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr uint64_t largest_file = uint64_t{16} << 20; // bytes
 constexpr size_t max_numbers = 200000;
 constexpr size_t max_coefficients = 10000;
-constexpr double hardly_off = 1e-3; // of an integral: rounding of the numbers
+constexpr double hardly_off = 1e-3; // tolerance of an integral: rounding of the values
 
 PhaseKind kind_named(std::string_view name) {
     return static_cast<PhaseKind>(std::ranges::find(phase_kinds, name, &PhaseTraits::name) - phase_kinds);
@@ -45,7 +45,7 @@ std::vector<double> numbers_of(const std::string& text, const Field& field) {
     return numbers;
 }
 
-// Numbers that stand in the object under a key, or in the file it names.
+// The numbers under a key of the object, or in the file it names.
 std::vector<double> stated_numbers(const Field& field, std::string_view key, Scene& scene) {
     const Field file = field.member("file"), inside = field.member(key);
     if (bool(file) == bool(inside)) refuse(field, "needs either " + quote_json(key) + " or \"file\"");

@@ -1,4 +1,4 @@
-// Scene files and bare glTF files into a Scene.
+// Reads scene files, bare glTF files and bare volumes into a Scene.
 #include "scene/file/scene_file.h"
 
 #include "base/error.h"
@@ -39,7 +39,7 @@ void read_general(const Field& root, Scene& scene) {
     if (const Field ambient = root.member("ambient")) scene.ambient = keyed_color(ambient);
 }
 
-// Nothing shines and nothing glows, at any time.
+// Whether nothing emits light at any time.
 bool is_dark(const Scene& scene) {
     const auto black = [](const Keyed<vec3>& color) {
         return std::ranges::all_of(color.values, [](vec3 value) { return value == vec3(0); });
@@ -50,7 +50,7 @@ bool is_dark(const Scene& scene) {
            std::ranges::all_of(scene.materials, [](const auto& material) { return material.emission == vec3(0); });
 }
 
-// A sun is infinitely far away: homogeneous fog without end lets none of its light through.
+// A sun is infinitely far away: unbounded homogeneous fog transmits none of its light.
 void warn_of_endless_fog(Scene& scene) {
     const auto sun = std::ranges::find_if(scene.lights, [](const LightSource& light) { return is_distant(light); });
     if (sun == scene.lights.end()) return;

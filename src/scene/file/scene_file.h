@@ -10,7 +10,7 @@ namespace tyndall {
 void read_cameras(const Field& root, Scene& scene);
 void read_objects(const Field& root, Scene& scene); // after the glTF
 void read_lights(const Field& root, Scene& scene);  // after the glTF: entries may change its lights
-// How a medium spreads light. Checks what goes with the medium's g, too.
+// The phase function of a medium. Also checks the medium's g against it.
 void read_phase(const Field& medium_field, MediumSource& medium, Scene& scene);
 
 void read_media(const Field& root, Scene& scene);
@@ -18,14 +18,14 @@ void read_media(const Field& root, Scene& scene);
 void read_map(const Field& field, Scene& scene, Background& map);
 void read_background(const Field& root, Scene& scene);
 
-bool is_environment(const Field& light);                // of an entry among the lights
+bool is_environment(const Field& light);                // `light`: an entry of "lights"
 void read_environment(const Field& root, Scene& scene); // after lights and background
 void read_billboards(const Field& root, Scene& scene);  // after the lights: each names one
 
-// The instances of an object: of a node and all below it, or else of a mesh; empty for names of neither.
+// The instances of an object: of a node and its descendants, or else of a mesh; empty if the name is neither.
 std::vector<int> instances_named(const Scene& scene, const std::string& name);
 
-// Reads a link of a light: of each instance, whether it belongs to it.
+// Reads a light link: per instance, whether it is included.
 std::vector<bool> read_link(const Field& field, const Scene& scene);
 
 // Whether the inner cone never exceeds the outer one, at their keys.
@@ -43,12 +43,12 @@ void read_light_power(const Field& field, LightSource& light); // after its prof
 void read_profile(const Field& field, Scene& scene, LightSource& light);
 void read_gobo(const Field& field, Scene& scene, LightSource& light);
 
-// How a sequence goes on before its first and after its last file.
+// How a sequence continues before its first and after its last file.
 SequenceMode sequence_mode_named(std::string_view name);
 
 // Runs `read` on a file that `field` names; its errors then name the field as well.
 void with_place(const Field& field, const std::function<void()>& read);
 
-void warn(Scene& scene, std::string_view text);                                            // one line, said once
+void warn(Scene& scene, std::string_view text); // one line, without duplicates
 void add_input(Scene& scene, const std::filesystem::path& path, std::string_view content); // each file once
 }

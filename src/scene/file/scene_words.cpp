@@ -36,14 +36,14 @@ std::string volume_scene_text(const std::filesystem::path& vdb) {
     if (!fog)
         refuse(vdb.string(), "it is not clear which of its grids is the fog; name one as \"grid\" in a scene file");
 
-    // Framed and lit as a box of its size would be.
+    // The default camera and lights for a box of the volume's bounds.
     const Box voxels{vec3(fog->active_low) - 0.5f, vec3(fog->active_high) + 0.5f};
     Scene stand_in;
     stand_in.media.emplace_back().bounds = transform(mat4(fog->index_to_world), voxels);
     add_missing_camera(stand_in);
     add_missing_light_and_fog(stand_in);
 
-    // Where the file does not say how dense it is, its longest way through the densest fog lets 2 % of the light pass.
+    // If the file states no extinction, 2 % of the light passes along the longest path at maximum density.
     std::string optics;
     const bool known =
         std::ranges::any_of(info.metadata, [](const auto& entry) { return entry.first == "tyndall_extinction_per_m"; });

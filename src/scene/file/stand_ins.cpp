@@ -14,7 +14,7 @@ void add_missing_camera(Scene& scene) {
     camera.vertical_fov = glm::radians(45.0f);
     const Box bounds = scene_bounds(scene, 0);
     if (!bounds.empty()) {
-        // Far enough for the sphere around the bounds to fit in a picture at least as wide as high.
+        // Far enough for the bounding sphere to fit in an image at least as wide as high.
         const float radius = std::max(0.5f * glm::length(bounds.size()), 1e-3f);
         const float distance = 1.05f * radius / std::sin(0.5f * camera.vertical_fov.values[0]);
         camera.target = bounds.center();
@@ -40,8 +40,8 @@ void add_missing_light_and_fog(Scene& scene) {
         warn(scene, file + ": there is no light; a sun of 3 lux and some ambient light are used");
     }
 
-    // Haze without an edge that is seen from among its contents, half of whose light gets across them and as far again.
-    // It ends far away, so that a level sun gets through.
+    // Haze without a visible edge, through which half the light passes over twice the scene's diagonal. It ends far
+    // away, so that light from a low sun gets through.
     const float diagonal = std::max(glm::length(bounds.size()), 1e-3f);
     MediumSource fog;
     fog.name = "default fog", fog.kind = MediumKind::height;

@@ -1,4 +1,4 @@
-// What stands in for things a scene does not say: a camera that sees everything, light, fog.
+// Defaults for what a scene lacks: a camera that sees everything, light, fog.
 #pragma once
 #include "scene/scene.h"
 

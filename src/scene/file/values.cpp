@@ -94,7 +94,7 @@ Keyed<quat> rotation_of(const Keyed<vec3>& degrees) {
         return result;
     }
 
-    // At most 10 degrees a step, so that the short way round between two of them is the way that was meant.
+    // At most 10 degrees per step, so that the shorter arc between two steps is the intended one.
     for (size_t i = 0; i + 1 < degrees.times.size(); ++i) {
         const vec3 turn = glm::abs(degrees.values[i + 1] - degrees.values[i]);
         const double turns = std::min(std::ceil(static_cast<double>(turn.x + turn.y + turn.z) / 10), 100000.0);
@@ -125,7 +125,7 @@ Keyed<vec3> difference(const Keyed<vec3>& a, const Keyed<vec3>& b, const Field& 
     std::sort(times.begin(), times.end());
     times.erase(std::unique(times.begin(), times.end()), times.end());
 
-    // What moves alike stays what it is; anything else becomes many short straight lines, with jumps kept sharp.
+    // Animations that match keep their interpolation; others become many short linear segments, with sharp steps.
     const bool straight = both && a.interpolation == Interpolation::linear && b.interpolation == Interpolation::linear;
     const bool alike = !both || (a.interpolation == b.interpolation && a.times == b.times) || straight;
     const bool jumps = !alike && (a.interpolation == Interpolation::step || b.interpolation == Interpolation::step);
@@ -143,7 +143,7 @@ Keyed<vec3> difference(const Keyed<vec3>& a, const Keyed<vec3>& b, const Field& 
         }
     }
 
-    // The last key of a loop is asked for itself, not for the start it wraps to.
+    // At the last key of a loop, use that key's value, not the first one's, to which the time wraps.
     const auto value_at = [](const Keyed<vec3>& value, float time) {
         return !value.constant() && time == value.times.back() ? value.values.back() : value.at(time);
     };

@@ -1,4 +1,4 @@
-// Numbers, vectors, colours and their keys out of a scene file. The schema has checked shapes and ranges.
+// Reads numbers, vectors, colors and their keys from a scene file. The schema has already checked types and ranges.
 #pragma once
 #include "base/json/json.h"
 #include "scene/keyed.h"
@@ -6,7 +6,7 @@
 #include <string>
 
 namespace tyndall {
-// A value and where it stands, so that a message can say so.
+// A JSON value with its location, for messages.
 struct Field {
     const Json* json = nullptr;
     std::string file, pointer; // "scenes/a.json", "/lights/0"
@@ -29,13 +29,14 @@ inline float read_degrees(const Field& field) { return glm::radians(read_number(
 Keyed<float> keyed_number(const Field& field);
 Keyed<float> keyed_degrees(const Field& field); // to radians
 Keyed<vec3> keyed_vector(const Field& field);
-Keyed<vec3> keyed_place(const Field& field, dvec3 origin); // counted from an origin
+Keyed<vec3> keyed_place(const Field& field, dvec3 origin); // relative to an origin
 Keyed<vec3> keyed_color(const Field& field);
 
-// Degrees about X, then Y, then Z. Turns between keys stay as written, however far: they are cut into small steps.
+// From degrees about X, then Y, then Z. Rotations between keys are split into small steps, so that turns of more than
+// 180 degrees stay as written.
 Keyed<quat> rotation_of(const Keyed<vec3>& degrees);
 
-// a - b at every moment: exact where both move alike, else in small straight steps.
-// Throws Error when both loop with different periods; `field` is what the message names.
+// a - b at all times: exact if both have the same keys and interpolation or are both linear, else in short linear
+// segments. Throws Error when both loop with different periods; `field` is what the message names.
 Keyed<vec3> difference(const Keyed<vec3>& a, const Keyed<vec3>& b, const Field& field);
 }

@@ -1,4 +1,4 @@
-// Elements of accessors as plain numbers. Ranges have been checked before.
+// Reads accessor elements as plain numbers. Ranges have already been checked.
 #include "base/error.h"
 #include "scene/gltf/document.h"
 
@@ -8,7 +8,7 @@ namespace tyndall {
 namespace {
 const char* const type_names[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
 
-// Where the elements of a view start; throws when its buffer came without data.
+// The data of a buffer view; throws if its buffer has none.
 const char* view_data(const GltfDocument& document, int view_index, const std::string& pointer) {
     const tinygltf::BufferView& view = document.model.bufferViews[view_index];
     if (const std::string& why = document.lacking[view.buffer]; !why.empty())
@@ -45,7 +45,7 @@ void each(int component_type, const char* data, size_t count, size_t stride, siz
     }
 }
 
-// Every element, then the sparse ones over it.
+// Visits every element, then the sparse elements that replace some of them.
 template<class Put>
 void each_element(const GltfDocument& document, const tinygltf::Accessor& accessor, size_t components,
                   const std::string& pointer, const Put& put) {
@@ -72,7 +72,7 @@ void each_element(const GltfDocument& document, const tinygltf::Accessor& access
          [&](size_t i, size_t c, auto value) { put(places[i], c, value); });
 }
 
-// Normalised integers stand for 0..1 or -1..1 (glTF 2.0, section 3.11).
+// Normalized integers represent 0..1 or -1..1 (glTF 2.0, section 3.11).
 float normalized(float value) { return value; }
 float normalized(uint8_t value) { return value / 255.0f; }
 float normalized(uint16_t value) { return value / 65535.0f; }

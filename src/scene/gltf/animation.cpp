@@ -1,4 +1,5 @@
-// Animations into keys of nodes. All of them play together; where two move the same thing, the first one does.
+// Converts animations to keys of nodes. All of them play together; if two animate the same property, the first one
+// wins.
 #include "base/error.h"
 #include "scene/gltf/document.h"
 
@@ -13,7 +14,8 @@ vec3 element(const float* values, const vec3&) { return {values[0], values[1], v
 float element(const float* values, float) { return values[0]; }
 quat element(const float* values, const quat&) { return {values[3], values[0], values[1], values[2]}; }
 
-// What a sampler holds: times, and `many` values of so many components for each, three times as many for splines.
+// The data of a sampler: times, and for each time `many` values of `components` components; three times as many for
+// splines.
 struct Samples {
     Interpolation interpolation;
     std::vector<float> times, values;
@@ -40,7 +42,7 @@ Samples samples_of(GltfDocument& document, const tinygltf::AnimationSampler& sam
     return samples;
 }
 
-// The keys of one of the values. Keys that do not go forward in time are left out.
+// The keys of one of the values. Skips keys whose time does not increase.
 template<class T> Keyed<T> keys_of(GltfDocument& document, const Samples& samples, size_t index = 0) {
     Keyed<T> keys;
     keys.interpolation = samples.interpolation;
@@ -59,7 +61,7 @@ template<class T> Keyed<T> keys_of(GltfDocument& document, const Samples& sample
     return keys;
 }
 
-// Only values are unit quaternions; the tangents of a spline are not.
+// Normalizes the values, but not the tangents of a spline.
 void make_unit(Keyed<quat>& keys) {
     const size_t stride = keys.interpolation == Interpolation::cubic ? 3 : 1;
     for (size_t i = stride / 2; i < keys.values.size(); i += stride) keys.values[i] = glm::normalize(keys.values[i]);
@@ -70,7 +72,7 @@ template<class T> void play(GltfDocument& document, const Keyed<T>& keys, Keyed<
     target = keys;
 }
 
-// Of the morph targets of all meshes at a node.
+// Animates the morph targets of all meshes at a node.
 void play_weights(GltfDocument& document, int node, const tinygltf::AnimationSampler& sampler,
                   const std::string& pointer) {
     for (const int instance : document.instances[node]) {

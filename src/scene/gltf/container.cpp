@@ -1,4 +1,4 @@
-// The outside of a glTF: plain JSON, or a .glb of a header and chunks (glTF 2.0, section 4.4).
+// The container of a glTF: plain JSON, or a .glb with a header and chunks (glTF 2.0, section 4.4).
 #include "base/error.h"
 #include "base/io/file.h"
 #include "scene/gltf/document.h"

@@ -1,4 +1,4 @@
-// Versions and extensions: what can be read, what is left out with a warning, what makes a file unreadable.
+// glTF versions and extensions: which are read, which are ignored with a warning, and which make a file unreadable.
 #include "base/error.h"
 #include "scene/gltf/document.h"
 
@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 7> read = {
 constexpr std::array<std::string_view, 3> compressed = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                                         "KHR_meshopt_compression"};
 
-// Extensions that change how things look, not what is there.
+// Extensions that affect only appearance, not geometry.
 bool only_looks(std::string_view name) {
     return name.starts_with("KHR_materials_") || name.starts_with("KHR_texture_") || name.starts_with("EXT_texture_") ||
            name.starts_with("MSFT_texture_");

@@ -1,4 +1,4 @@
-// The bytes behind the URIs of a glTF. What a document names is never trusted to stay where it belongs.
+// The bytes behind the URIs of a glTF. Paths in a document are untrusted and may not leave its directory.
 #include "base/error.h"
 #include "base/io/file.h"
 #include "scene/file/scene_file.h"
@@ -46,13 +46,13 @@ std::string path_problem(std::string_view path) {
     return {};
 }
 
-// The file a URI names, for certain inside the document's directory, symbolic links resolved.
+// The file a URI names, symbolic links resolved; guaranteed to be inside the document's directory.
 fs::path resolved(const GltfDocument& document, const std::string& uri, const std::string& pointer) {
     const std::string decoded = percent_decoded(uri);
     if (const std::string problem = path_problem(decoded); !problem.empty())
         refuse(document.place(pointer), "\"" + printable(uri, 100) + "\" " + problem);
 
-    // Some exporters write names with a percent sign as they are.
+    // Some exporters do not escape percent signs in names.
     std::error_code error;
     fs::path path = document.directory / decoded;
     if (!fs::exists(path, error) && path_problem(uri).empty() && fs::exists(document.directory / uri, error))
@@ -102,7 +102,7 @@ bool is_data_uri(std::string_view uri) {
     return start == "data:";
 }
 
-// One buffer's bytes, exactly as many as it says; why there are none in `lacking`.
+// A buffer's data, exactly byteLength bytes; if there is none, `lacking` says why.
 std::string buffer_bytes(GltfDocument& document, const Json& buffer, size_t index, const GltfContainer& container,
                          std::string& lacking) {
     const std::string pointer = gltf_pointer("buffers", index);
@@ -110,7 +110,7 @@ std::string buffer_bytes(GltfDocument& document, const Json& buffer, size_t inde
     const Json* uri = buffer.find("uri");
     std::string bytes;
     if (uri) {
-        // A file far larger than the buffer it stands for is refused unread.
+        // A file far larger than its buffer is refused without reading it.
         bytes = gltf_uri_bytes(document, uri->string, pointer + "/uri", 2 * length + (uint64_t{64} << 20));
     } else if (index == 0 && container.has_binary) {
         bytes = container.binary;

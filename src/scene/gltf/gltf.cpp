@@ -24,7 +24,7 @@ void load_gltf(const std::filesystem::path& file, const LoadOptions& options, Sc
     document.directory = file.has_parent_path() ? file.parent_path() : ".";
     document.scene = &scene, document.options = options;
     {
-        // The text and its tree are gone before the meshes are made.
+        // This scope frees the text and its tree before the meshes are made.
         const GltfContainer container = read_gltf_container(file);
         add_input(scene, file, container.bytes);
         for (const std::string& warning : container.warnings) document.warn("", warning);

@@ -1,4 +1,4 @@
-// EXT_lights_ies: lights of photometric files, aimed along -Z of their nodes.
+// EXT_lights_ies: lights with IES profiles, aimed along -Z of their nodes.
 #include "base/error.h"
 #include "scene/file/scene_file.h"
 #include "scene/gltf/document.h"
@@ -7,7 +7,7 @@ namespace tyndall {
 namespace {
 constexpr const char* extension_name = "EXT_lights_ies";
 
-// Where a light profile is in the document.
+// The JSON pointer of a light profile.
 std::string pointer_to(int index) {
     return "/extensions/" + std::string(extension_name) + "/lights/" + std::to_string(index);
 }

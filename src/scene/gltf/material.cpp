@@ -1,4 +1,4 @@
-// Materials and their textures: base colour, emission and alpha; the rest of a material is left out.
+// Materials and their textures: base color, emission and alpha; the rest of a material is ignored.
 #include "base/error.h"
 #include "base/text.h"
 #include "scene/gltf/document.h"
@@ -9,7 +9,7 @@ namespace {
 constexpr int largest_texture_side = 4096;
 constexpr size_t max_texels = size_t{64} << 20; // 1 GiB
 
-// A texture as a material refers to it.
+// A material's reference to a texture.
 struct TextureUse {
     int texture = -1, uv_set = 0;
     mat3 transform{1};
@@ -47,7 +47,7 @@ TextureUse texture_use(const tinygltf::TextureInfo& info) {
     return texture_use(info.index, info.texCoord, info.extensions);
 }
 
-// The encoded bytes of an image; a missing file is no reason to refuse the scene, a forbidden one is.
+// The encoded bytes of an image. The caller tolerates a missing file, but not a forbidden path.
 std::string image_bytes(GltfDocument& document, int index, const std::string& pointer) {
     const GltfImage& image = document.images[index];
     if (image.buffer_view < 0) return gltf_uri_bytes(document, image.uri, pointer + "/uri", uint64_t{1} << 30);
@@ -71,7 +71,7 @@ Image<vec4> decoded_image(GltfDocument& document, int index) {
     } catch (const Error& error) {
         if (error.code == ExitCode::refused) throw;
         const std::string text = error.what(), place = pointer + "/uri: ";
-        const size_t at = text.find(place); // said once
+        const size_t at = text.find(place); // strips the place, which the warning repeats
         document.warn(pointer, "the material's colour is used instead: " +
                                    (at == text.npos ? text : text.substr(at + place.size())));
         return {};
@@ -89,7 +89,7 @@ Image<vec4> decoded_image(GltfDocument& document, int index) {
     }
 }
 
-// Within what a texture may take, by halving.
+// Halves an image until it fits the limits for textures.
 Image<vec4> fitted(GltfDocument& document, Image<vec4> image, int index) {
     const ivec2 before = image.size;
     while (std::max(image.size.x, image.size.y) > largest_texture_side ||
@@ -143,7 +143,7 @@ int scene_texture(GltfDocument& document, const TextureUse& use) {
     return known->second;
 }
 
-// Base colour and its texture: of the metallic-roughness model, or the diffuse part of the older specular-glossiness.
+// Base color and its texture: of the metallic-roughness model, or the diffuse part of the older specular-glossiness.
 TextureUse base_color(const tinygltf::Material& source, Material& material) {
     const auto older = source.extensions.find("KHR_materials_pbrSpecularGlossiness");
     if (older == source.extensions.end() || !older->second.IsObject()) {
@@ -190,7 +190,7 @@ int gltf_material(GltfDocument& document, int index, int& uv_set) {
     material.emission = emission_of(source);
     if (emissive.texture >= 0 && max_component(material.emission) > 0) {
         material.emission_texture = scene_texture(document, emissive);
-        // Without its texture, which is dark nearly everywhere, the whole surface would glow.
+        // Without its texture, which is dark nearly everywhere, the whole surface would emit light.
         if (material.emission_texture < 0) material.emission = vec3(0);
         if (base.texture >= 0 && base.uv_set != emissive.uv_set)
             document.warn(gltf_pointer("materials", index),

@@ -1,5 +1,5 @@
-// Primitives into meshes: lists, strips and fans of triangles, only the vertices they use, nothing that is not a
-// number.
+// Converts primitives to meshes: lists, strips and fans of triangles, with only the vertices they use and finite
+// values.
 #include "base/error.h"
 #include "scene/gltf/document.h"
 
@@ -11,7 +11,7 @@ namespace {
 constexpr size_t max_triangles = size_t{1} << 29, max_morphed = size_t{1} << 25;
 constexpr int max_influence_sets = 8;
 
-// The attributes of a primitive as they stand in the file.
+// The attributes of a primitive as stored in the file.
 struct Vertices {
     std::vector<float> positions, normals, uvs, colors;
     size_t color_parts = 3;
@@ -113,7 +113,7 @@ std::vector<glm::uvec3> triangles_of(const std::vector<uint32_t>& indices, int m
     return triangles;
 }
 
-// Leaves out triangles with a corner that is not a number; returns how many.
+// Removes triangles with a non-finite corner; returns how many.
 size_t drop_non_finite(std::vector<glm::uvec3>& triangles, const std::vector<float>& positions) {
     return std::erase_if(triangles, [&](const glm::uvec3& triangle) {
         return !is_finite(triple(positions, triangle.x)) || !is_finite(triple(positions, triangle.y)) ||
@@ -121,7 +121,7 @@ size_t drop_non_finite(std::vector<glm::uvec3>& triangles, const std::vector<flo
     });
 }
 
-// Unit normals; one that is no direction is taken from a triangle it belongs to.
+// Normalizes the normals; an invalid one is replaced by the normal of a triangle that uses it.
 void mend_normals(Mesh& mesh) {
     std::vector<bool> bad(mesh.normals.size());
     for (size_t i = 0; i < mesh.normals.size(); ++i) {
@@ -144,7 +144,7 @@ vec3 finite_triple(const std::vector<float>& values, size_t i) {
     return is_finite(value) ? value : vec3(0);
 }
 
-// What morph targets add to a vertex, and the joints it follows; those whose weights say nothing follow the first.
+// Copies a vertex's morph offsets, joints and weights; a vertex without valid weights follows its first joint.
 void copy_shape(const Vertices& vertices, size_t from, Mesh& mesh) {
     for (size_t t = 0; t < vertices.targets.size(); ++t) {
         const auto& [positions, normals] = vertices.targets[t];
@@ -196,7 +196,7 @@ void compact(const Vertices& vertices, Mesh& mesh) {
     if (!mesh.normals.empty()) mend_normals(mesh);
 }
 
-// Whether everything a primitive refers to came with the file: a buffer may be a mere placeholder.
+// Whether all data a primitive refers to is present: a buffer may be a mere placeholder.
 bool has_data(const GltfDocument& document, const tinygltf::Primitive& primitive) {
     const auto filled = [&](int accessor) {
         const int view = document.model.accessors[accessor].bufferView;

@@ -1,4 +1,4 @@
-// The hierarchy of the default scene: places, instances of meshes, cameras and lights.
+// The node hierarchy of the default scene: transforms, instances of meshes, cameras and lights.
 #include "base/error.h"
 #include "scene/gltf/document.h"
 
@@ -65,7 +65,7 @@ std::vector<int> root_nodes(const tinygltf::Model& model) {
     return roots;
 }
 
-// Index of the scene's skin; -1 where its joints are not all in the scene.
+// Index of the scene's skin; -1 if not all of its joints are in the scene or a matrix is not finite.
 int gltf_skin(GltfDocument& document, int index) {
     const auto [known, added] = document.skins.try_emplace(index, -1);
     if (!added) return known->second;
@@ -101,7 +101,7 @@ std::vector<Keyed<float>> target_weights(const tinygltf::Model& model, int node,
     return result;
 }
 
-// Those of a node of the file, at a node of the scene.
+// Adds instances of the mesh of a glTF node at a node of the scene.
 void add_instances(GltfDocument& document, int index, int node, const std::string& pointer) {
     const tinygltf::Node& source = document.model.nodes[index];
     const int skin = source.skin >= 0 ? gltf_skin(document, source.skin) : -1;
@@ -165,7 +165,7 @@ std::string unique_name(const std::string& wanted, std::set<std::string>& taken)
     return name;
 }
 
-// What people call the thing: its node, without the helper node that Blender's exporter puts in between.
+// The name that users know: the node's, without the suffix of the helper node that Blender's exporter inserts.
 std::string object_name(const tinygltf::Node& node, const std::string& own, const std::string& otherwise) {
     constexpr std::string_view helper = "_Orientation";
     if (node.name.ends_with(helper) && node.name.size() > helper.size())
@@ -189,7 +189,7 @@ CameraSource camera_source(GltfDocument& document, const tinygltf::Camera& sourc
     return camera;
 }
 
-// Blender writes candela and lux, or leaves out 683 lm/W, or writes watts, which points and spots spread all around.
+// Blender writes candela and lux, or omits 683 lm/W, or writes watts, which points and spots spread over the sphere.
 float unit_factor(LightUnits units, LightKind kind) {
     if (units == LightUnits::spec) return 1;
     return units == LightUnits::raw && !traits_of(kind).distant ? 683 / (4 * pi) : 683.0f;
@@ -230,7 +230,7 @@ void add_gltf_nodes(GltfDocument& document) {
     while (!open.empty()) {
         const auto [index, parent] = open.back();
         open.pop_back();
-        if (document.nodes[index] >= 0) continue; // a scene may name a node twice
+        if (document.nodes[index] >= 0) continue; // a scene may list a node twice
         const int node = add_node(document, index, parent);
         const std::vector<int>& children = model.nodes[index].children;
         for (auto child = children.rbegin(); child != children.rend(); ++child) open.push_back({*child, node});

@@ -1,4 +1,4 @@
-// The checked JSON through tinygltf.
+// Parses the checked JSON with tinygltf.
 #include "base/error.h"
 #include "base/json/json_pointer.h"
 #include "scene/gltf/document.h"
@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-// tinygltf takes 1e5 for no integer, so whole numbers are written with all their digits.
+// tinygltf does not accept 1e5 as an integer, so integers are written with all their digits.
 void append_number(std::string& text, double number) {
     if (number == std::floor(number) && std::abs(number) < 9e15) {
         text += std::to_string(static_cast<int64_t>(number));
@@ -41,7 +41,7 @@ void append(std::string& text, const Json& value, bool root) {
     }
 }
 
-// Nothing is left in the text that names a file; should tinygltf ask all the same, there is none.
+// The text names no files; if tinygltf asks for one all the same, it does not exist.
 tinygltf::FsCallbacks no_files() {
     tinygltf::FsCallbacks callbacks{};
     callbacks.FileExists = [](const std::string&, void*) { return false; };

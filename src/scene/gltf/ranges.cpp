@@ -1,4 +1,4 @@
-// What indices and offsets of a glTF add up to: every read stays inside its buffer, every walk over the nodes ends.
+// Checks the indices and offsets of a glTF: every read stays inside its buffer, every traversal of the nodes ends.
 #include "base/error.h"
 #include "scene/gltf/document.h"
 
@@ -29,7 +29,7 @@ uint64_t extent(const tinygltf::Accessor& accessor, uint64_t size) {
     return columns == 1 ? size : size - size / columns + columns * component;
 }
 
-// count elements of `size` bytes, `stride` apart, from `offset` of the view.
+// Checks that `count` elements of `size` bytes, `stride` apart, starting at `offset` fit the buffer view.
 void check_span(const GltfDocument& document, int view_index, uint64_t offset, uint64_t count, uint64_t size,
                 uint64_t stride, const std::string& pointer) {
     const uint64_t length = document.model.bufferViews[view_index].byteLength;
@@ -70,7 +70,7 @@ void check_accessors(const GltfDocument& document) {
     }
 }
 
-// Nodes form a forest: at most one parent each, no way back up, at most 256 levels.
+// Nodes form a forest: at most one parent each, no cycles, at most 256 levels.
 void check_nodes(const GltfDocument& document) {
     const std::vector<tinygltf::Node>& nodes = document.model.nodes;
     std::vector<int> parent(nodes.size(), -1);
@@ -84,7 +84,7 @@ void check_nodes(const GltfDocument& document) {
             known = static_cast<int>(i);
         }
 
-    // A chain of parents longer than the limit is either too deep or goes in a circle.
+    // A chain of parents longer than the limit is either too deep or a cycle.
     std::vector<int> level(nodes.size(), 0);
     for (size_t i = 0; i < nodes.size(); ++i) {
         int steps = 0, at = static_cast<int>(i);

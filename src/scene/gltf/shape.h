@@ -1,5 +1,5 @@
-// The shape of a glTF document: every member that is used has the right type, lies in its range, and every index points
-// to something. Checked on the raw JSON, before any library reads it.
+// Validates the structure of a glTF document: every member that is used has the right type and range, and every index
+// refers to an existing element. Works on the raw JSON, before any library reads it.
 #pragma once
 #include "base/json/json.h"
 
@@ -7,7 +7,7 @@ namespace tyndall {
 // Throws Error (refused) naming file and JSON pointer.
 void check_gltf_shape(const Json& document, std::string_view file);
 
-// What one member says may need another beside it. After the shape has been checked. Throws Error (refused).
+// Checks requirements of members on each other; call after check_gltf_shape(). Throws Error (refused).
 void check_gltf_needs(const Json& document, std::string_view file);
 
 // The array of a collection ("nodes"; "lights" of KHR_lights_punctual, "profiles" of EXT_lights_ies), or null.

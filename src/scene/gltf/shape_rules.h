@@ -169,7 +169,7 @@ constexpr Rule animation[] = {text("name"), objects("channels", channel, require
                               objects("samplers", animation_sampler, required)};
 
 // Cameras and lights.
-constexpr double right_angle = 1.5708; // a little more: many writers round up
+constexpr double right_angle = 1.5708; // slightly more than π/2: many exporters round up
 constexpr Rule perspective[] = {positive("yfov", 1e30, required), positive("znear", 1e30, required),
                                 positive("zfar", 1e30), positive("aspectRatio", 1e30)};
 constexpr Rule orthographic[] = {number("xmag", -1e30, 1e30, required), number("ymag", -1e30, 1e30, required),

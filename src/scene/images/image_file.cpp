@@ -39,7 +39,7 @@ void check_length(std::string_view bytes, std::string_view where) {
     if (bytes.size() > size_t{1} << 30) refuse(where, "the image file is over 1 GiB");
 }
 
-// The library's reasons are words of its code.
+// stb_image's failure reasons are internal terms, not fit for users.
 [[noreturn]] void refuse_damaged(std::string_view where) {
     const std::string_view reason = stbi_failure_reason() ? stbi_failure_reason() : "";
     refuse(where, reason == "outofdata" ? "the image is cut off" : "the image is cut off or damaged");
@@ -146,7 +146,7 @@ Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::
 }
 
 namespace {
-// Adds up the blocks of a picture whose colours `color_of(pixel)` gives.
+// Averages the blocks of an image whose pixel colors are `color_of(pixel)`.
 template<class Color> void add_blocks(ReducedPicture& picture, const Color& color_of) {
     const float share = 1 / static_cast<float>(picture.factor * picture.factor);
     picture.image = Image<vec3>((picture.size + picture.factor - 1) / picture.factor);

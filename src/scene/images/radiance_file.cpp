@@ -12,7 +12,7 @@ namespace tyndall {
 namespace {
 constexpr int64_t max_pixels = int64_t{1} << 27;
 
-// One axis of the resolution line, as "-Y 512".
+// One axis of the resolution line, such as "-Y 512".
 struct Axis {
     char name = 0;
     bool backwards = false;
@@ -22,7 +22,7 @@ struct Axis {
 };
 
 struct Header {
-    Axis across_lines, along_line; // of the file's lines
+    Axis across_lines, along_line; // relative to the file's scanlines
     vec3 multiplied{1};
     size_t pixels_at = 0;
 
@@ -34,7 +34,7 @@ struct Header {
 
 [[noreturn]] void refuse_cut_off(std::string_view where) { refuse(where, "the image is cut off"); }
 
-// The next line, without its end.
+// The next line, without its line ending.
 std::string_view next_line(std::string_view bytes, size_t& at, std::string_view where) {
     constexpr size_t longest = 65536;
     const size_t end = bytes.substr(0, at + longest).find('\n', at);
@@ -93,7 +93,7 @@ Header read_header(std::string_view bytes, std::string_view where) {
 
 using Rgbe = std::array<uint8_t, 4>;
 
-// What is left of the file.
+// The unread part of the file.
 struct Bytes {
     std::string_view rest;
     std::string_view where;
@@ -111,7 +111,7 @@ struct Bytes {
     }
 };
 
-// Each of the four bytes of all pixels by itself: runs of one value, or so many different ones.
+// New run-length encoding: each of the four components separately, as runs of one value or literal values.
 void read_planes(Bytes& bytes, std::vector<Rgbe>& line) {
     for (size_t plane = 0; plane < 4; ++plane)
         for (size_t i = 0; i < line.size();) {
@@ -128,7 +128,8 @@ void read_planes(Bytes& bytes, std::vector<Rgbe>& line) {
         }
 }
 
-// Pixels one by one; 1 1 1 n repeats the last one n times, and more of the kind count as higher bytes of n.
+// Uncompressed, or old run-length encoding: 1 1 1 n repeats the previous pixel n times, and further such pixels give
+// the higher bytes of n.
 void read_pixels(Bytes& bytes, Rgbe first, std::vector<Rgbe>& line) {
     int shift = 0;
     for (size_t i = 0; i < line.size();) {

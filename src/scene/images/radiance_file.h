@@ -1,4 +1,4 @@
-// Radiance pictures (.hdr, .pic): Ward 1991, "Real Pixels"; the format as Radiance's own documentation has it.
+// Radiance images (.hdr, .pic): Ward 1991, "Real Pixels"; the format follows Radiance's own documentation.
 #pragma once
 #include "base/image.h"
 
@@ -8,10 +8,10 @@
 namespace tyndall {
 bool is_radiance(std::string_view bytes); // by its first bytes
 
-// Of the upright picture. Throws Error (refused) naming `where`.
+// Size of the upright image. Throws Error (refused) naming `where`.
 ivec2 radiance_size(std::string_view bytes, std::string_view where);
 
-// Upright pixels, divided by the EXPOSURE and COLORCORR of the header, which `note` says; plain or in either run-length
-// encoding. Throws Error (refused) naming `where`, also for a file that is cut off.
+// Decodes uncompressed pixels or either run-length encoding to an upright image, divided by the header's EXPOSURE and
+// COLORCORR, which `note` reports. Throws Error (refused) naming `where`, also if the file is truncated.
 Image<vec3> decode_radiance(std::string_view bytes, std::string_view where, std::string& note);
 }

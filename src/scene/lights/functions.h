@@ -1,4 +1,4 @@
-// What a kind of light does: its row in the table of lights.cpp.
+// The functions of a kind of light: a row in the table of lights.cpp.
 #pragma once
 #include "scene/light.h"
 
@@ -7,7 +7,7 @@ struct LightFunctions {
     LightSample (*arrival)(const Light& light, const vec3& point);
     Ray (*sample)(const Light& light, vec3 point, vec2 u); // as ray_to_light()
     bool (*is_soft)(const Light& light);
-    Box (*bounds)(const Light& light); // what the scene has to hold of it; empty for none
+    Box (*bounds)(const Light& light); // as light_bounds()
     Interval<double> (*reach)(const Light& light, dvec3 origin, dvec3 direction);
 };
 

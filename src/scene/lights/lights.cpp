@@ -1,4 +1,4 @@
-// Every question to a light goes to the functions of its kind.
+// Dispatches calls on a light to the functions of its kind.
 #include "scene/light_reach.h"
 #include "scene/lights/functions.h"
 

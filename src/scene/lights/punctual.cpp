@@ -1,11 +1,11 @@
-// Point lights and spots, by KHR_lights_punctual; with a radius, balls of light.
+// Point lights and spots as in KHR_lights_punctual; spherical lights if they have a radius.
 #include "scene/light_filter.h"
 #include "scene/light_reach.h"
 #include "scene/lights/functions.h"
 
 namespace tyndall {
 namespace {
-// Inverse square law, held inside the glowing ball (or its core) so that it stays finite.
+// Inverse square law, capped inside the light's sphere (or its core) so that it stays finite.
 LightSample punctual_arrival(const Light& light, const vec3& point) {
     const vec3 towards = light.position - point;
     const float distance = glm::length(towards), reach = capped_radius(light);
@@ -26,7 +26,7 @@ Ray punctual_sample(const Light& light, vec3 point, vec2 u) {
     const vec3 axis = towards / distance;
     if (!(light.radius > 0)) return {point, axis, distance * 0.9999f};
 
-    // Where the direction meets the ball: of the two roots of |t·d - towards|² = r², the nearer.
+    // The intersection with the sphere: the nearer of the two roots of |t·d - towards|² = r².
     const float sine = light.radius / distance;
     const vec3 direction = direction_in_cone(axis, one_minus_cosine(sine * sine), u);
     const float along = glm::dot(direction, towards);
@@ -39,7 +39,7 @@ bool punctual_is_soft(const Light& light) { return light.radius > 0; }
 
 Box punctual_bounds(const Light& light) { return {light.position, light.position}; }
 
-// The ball of the range and the cone of a spot.
+// The sphere of the range and the cone of a spot.
 Interval<double> punctual_reach(const Light& light, dvec3 origin, dvec3 direction) {
     Interval<double> reach{-infinity, infinity};
     if (!std::isinf(light.range)) reach = inside_ball(light.position, light.range, origin, direction);

@@ -1,4 +1,4 @@
-// What an IES file sends in a direction, and altogether.
+// The intensity of an IES file in a direction, and its total flux.
 #include "scene/photometry/ies_file.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@ namespace tyndall {
 namespace {
 constexpr double exact_pi = 3.14159265358979323846, degrees = 180 / exact_pi;
 
-// Where a value lies among ascending angles.
+// The position of a value in a list of ascending angles.
 struct Between {
     size_t index = 0;
     double share = 0;
@@ -23,7 +23,7 @@ Between find(const std::vector<double>& angles, double value) {
     return {index, std::clamp((value - angles[index]) / (angles[index + 1] - angles[index]), 0.0, 1.0), true};
 }
 
-// The measured plane that stands for a horizontal angle of 0 to 360 degrees.
+// Maps a horizontal angle of 0 to 360 degrees to the measured planes by the file's symmetry.
 double folded(const IesFile& file, double angle) {
     const double first = file.horizontal.front(), last = file.horizontal.back();
     if (first > 45) return angle < 90 ? 180 - angle : angle > 270 ? 540 - angle : angle; // 90 to 270
@@ -32,7 +32,7 @@ double folded(const IesFile& file, double angle) {
     return last > 135 || angle <= 90 ? angle : 180 - angle;
 }
 
-// ∫ sin θ over each knot's share of a function that is linear between knots, in degrees.
+// Quadrature weights for ∫ f sin θ dθ of a function that is linear between knots; the knots are in degrees.
 std::vector<double> sine_weights(const std::vector<double>& angles) {
     std::vector<double> weights(angles.size());
     for (size_t i = 0; i + 1 < angles.size(); ++i) {
@@ -44,7 +44,7 @@ std::vector<double> sine_weights(const std::vector<double>& angles) {
     return weights;
 }
 
-// The same of 1.
+// The same for ∫ f dθ.
 std::vector<double> even_weights(const std::vector<double>& angles) {
     std::vector<double> weights(angles.size());
     for (size_t i = 0; i + 1 < angles.size(); ++i) {
@@ -64,7 +64,7 @@ double candela_at(const IesFile& file, dvec3 direction) {
         horizontal = folded(file, horizontal < 0 ? horizontal + 360 : horizontal);
     } else {
         if (direction.z < 0) return 0;
-        // The planes of type B turn about the axis across, those of type A about the upright one.
+        // The planes of type B rotate about the horizontal axis, those of type A about the vertical one.
         const bool b = file.type == Photometry::type_b;
         vertical = b ? std::atan2(direction.y, direction.z) * degrees : latitude(direction.y);
         horizontal = b ? latitude(direction.x) : std::atan2(direction.x, direction.z) * degrees;
@@ -90,7 +90,7 @@ double zonal_lumens(const IesFile& file) {
         const double covered = file.horizontal.back() - file.horizontal.front();
         mirrored = file.horizontal.size() == 1 ? 1 : 360 / covered;
     } else {
-        // Latitudes count from the pole.
+        // Converts latitudes to angles from the pole.
         const auto from_pole = [](std::vector<double> angles) {
             for (double& angle : angles) angle += 90;
             return angles;

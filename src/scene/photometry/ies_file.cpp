@@ -26,12 +26,12 @@ bool starts_with_tilt(std::string_view line) {
            });
 }
 
-// The file from front to back, line by line at first, then number by number.
+// Reads the file from start to end, line by line at first, then number by number.
 class Reader {
 public:
     Reader(std::string_view bytes, std::string_view where) : left_(bytes), where_(where) {}
 
-    // The next line; nothing at the end.
+    // The next line; empty at the end of the file.
     std::optional<std::string_view> line() {
         if (left_.empty()) return {};
         const size_t end = std::min(left_.find_first_of("\r\n"), left_.size());
@@ -56,7 +56,7 @@ public:
         return *value;
     }
 
-    // A count of numbers that the rest of the file has room for.
+    // Reads a count of numbers that fit in the rest of the file.
     size_t count(const char* what, double at_least) {
         const double value = number(what);
         if (!(value >= at_least) || value != std::floor(value))
@@ -110,7 +110,7 @@ private:
     size_t line_ = 0;
 };
 
-// "IESNA:LM-63-2002", "IESNA91", "IES:LM-63-2019"; any other first line is one of 1986.
+// "IESNA:LM-63-2002", "IESNA91", "IES:LM-63-2019"; any other first line means LM-63-1986.
 std::string standard_of(std::string_view line) {
     if (const size_t at = line.find("LM-63-"); line.starts_with("IES") && at != line.npos)
         return std::string(line.substr(at, 10));
@@ -118,7 +118,7 @@ std::string standard_of(std::string_view line) {
     return line.starts_with("IESNA95") ? "LM-63-1995" : "LM-63-1986";
 }
 
-// The lines before the numbers: what the file is, its keywords, how the lamp is tilted.
+// The lines before the numbers: the standard, the keywords, the tilt.
 void read_head(Reader& reader, IesFile& file) {
     bool first = true;
     while (const std::optional<std::string_view> line = reader.line()) {
@@ -138,7 +138,7 @@ void read_head(Reader& reader, IesFile& file) {
     reader.fail("no line \"TILT=\": not an IES photometric file");
 }
 
-// What the lamp gives when its luminaire is tilted; how it hangs is not known here.
+// Reads the tilt factors, which are not applied, as the luminaire's mounting is unknown.
 void read_tilt(Reader& reader, IesFile& file) {
     std::string upper = file.tilt;
     for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
@@ -160,7 +160,7 @@ void read_tilt(Reader& reader, IesFile& file) {
                          shortest_text(file.tilt_factors.high) + " are left out");
 }
 
-// Angles of one kind, which have to go up.
+// Vertical or horizontal angles, which must ascend.
 std::vector<double> read_angles(Reader& reader, size_t count, const char* what, double low, double high) {
     std::vector<double> angles = reader.numbers(count, what);
     for (size_t i = 0; i < count; ++i) {
@@ -175,7 +175,7 @@ std::vector<double> read_angles(Reader& reader, size_t count, const char* what, 
 
 bool near(double a, double b) { return std::abs(a - b) < 0.01; }
 
-// The planes that LM-63 knows: others would have to be guessed.
+// Accepts the ranges of horizontal angles that LM-63 defines: others would have to be guessed.
 void check_planes(const Reader& reader, IesFile& file) {
     const size_t count = file.horizontal.size();
     const double first = file.horizontal.front(), last = file.horizontal.back();
@@ -221,7 +221,7 @@ void read_body(Reader& reader, IesFile& file) {
     for (int axis = 0; axis < 3; ++axis)
         file.size[axis] = reader.number("the size of the luminaire") * (units == 1 ? metres_per_foot : 1);
     file.ballast = reader.number("the ballast factor");
-    // Until 1995 a factor, in 2002 always 1; in 2019 a code of digits that tells who made the file.
+    // The ballast-lamp factor until 1995, always 1 in 2002, the code of the file generation type in 2019.
     const double third = reader.number("the ballast-lamp factor");
     file.standard == "LM-63-2019" ? file.generation = third : file.ballast *= third;
     file.watts = reader.number("the input watts");
@@ -240,7 +240,7 @@ double IesFile::peak() const { return candela.empty() ? 0 : *std::ranges::max_el
 
 IesFile read_ies(std::string_view bytes, std::string_view where) {
     if (bytes.starts_with("\xef\xbb\xbf")) bytes.remove_prefix(3);
-    if (const size_t end = bytes.find('\x1a'); end != bytes.npos) bytes = bytes.substr(0, end); // DOS ends texts so
+    if (const size_t end = bytes.find('\x1a'); end != bytes.npos) bytes = bytes.substr(0, end); // DOS end-of-file mark
     Reader reader(bytes, where);
     IesFile file;
     read_head(reader, file);

@@ -33,14 +33,14 @@ double even_step(const std::vector<double>& angles, double finest) {
 // Rows, columns and their angles, in degrees.
 struct Lattice {
     double first = 0, last = 180, row = 0.25, column = 1;
-    bool round = false; // one column stands for all
+    bool round = false; // rotationally symmetric, with a single column
 };
 
 Lattice lattice_of(const IesFile& file) {
     if (file.type != Photometry::type_c) return {0, 90, 0.25, 1, false};
     Lattice lattice{file.vertical.front(), file.vertical.back(), even_step(file.vertical, 0.1), 360,
                     file.horizontal.size() == 1};
-    std::vector<double> circle = file.horizontal; // the table goes once around from 0
+    std::vector<double> circle = file.horizontal; // the table covers the full circle from 0
     if (circle.front() > 0) circle.insert(circle.begin(), 0);
     if (circle.back() < 360) circle.push_back(360);
     if (!lattice.round) lattice.column = even_step(circle, 0.5);
@@ -52,7 +52,7 @@ dvec3 direction_of(double vertical, double horizontal) {
     return {std::sin(v) * std::cos(h), std::sin(v) * std::sin(h), std::cos(v)};
 }
 
-// Degrees from the aim to the angle at which the last light has gone.
+// The angle from the aim beyond which there is no light, degrees.
 double reach_of(const IesProfile& profile, const Lattice& lattice) {
     int lit = 0;
     for (int column = 0; column < profile.columns; ++column)

@@ -6,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-// Candela of a light of one lumen.
+// Candela per lumen of a light.
 double candela_per_lumen(const LightSource& light, double seconds) {
     constexpr double sphere = 4 * double{pi};
     if (light.profile) return light.profile->peak / light.profile->lumens;
@@ -19,7 +19,7 @@ double candela_per_lumen(const LightSource& light, double seconds) {
 }
 
 double cone_lumens(double inner, double outer) {
-    // As cone_falloff(): ((cosine - edge) / width)² up to the even part.
+    // As in cone_falloff(): ((cosine - edge) / width)² up to the uniform part.
     const double edge = std::cos(outer), width = std::max(std::cos(inner) - edge, 1e-6);
     const double whole = 2 * std::sin(0.5 * outer) * std::sin(0.5 * outer); // 1 - edge
     const double even = std::max(whole - width, 0.0), soft = std::min(whole, width);

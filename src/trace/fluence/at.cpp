@@ -1,11 +1,11 @@
-// Fluence between the cells of its grid, and what fog scatters of it.
+// Interpolation of the fluence grid, and scattering of its light toward the eye.
 #include "trace/fluence/fluence.h"
 
 #include <algorithm>
 
 namespace tyndall {
 namespace {
-// Whether light gets from a cell to another one at a corner next to it, along x, then y, then z.
+// Whether no wall separates two adjacent cells, stepping along x, then y, then z.
 bool is_open(const FluenceGrid& grid, ivec3 from, ivec3 to) {
     for (int axis = 0; axis < 3; ++axis) {
         ivec3 before = from;
@@ -16,13 +16,13 @@ bool is_open(const FluenceGrid& grid, ivec3 from, ivec3 to) {
     return true;
 }
 
-// The cells between whose centres a point lies: how much each counts.
+// The cells whose centers surround a point, and their interpolation weights.
 struct Corners {
     ivec3 cells[8];
     float shares[8];
 };
 
-// Leaves those that the point does not see.
+// Drops the cells that are hidden from the point, and normalizes the weights.
 void leave_seen(const FluenceGrid& grid, vec3 place, ivec3 home, Corners& corners) {
     const vec4 cut = grid.cuts[cell_index(grid, home)];
     const auto before = [&](vec3 at) { return glm::dot(vec3(cut), at) + cut.w; };
@@ -63,7 +63,7 @@ FluenceAt fluence_at(const FluenceGrid& grid, vec3 point) {
 }
 
 namespace {
-// By a Henyey-Greenstein lobe of the fog.
+// Scattering by a Henyey–Greenstein lobe.
 vec3 scattered_by_lobe(const FluenceAt& at, vec3 direction, float g) {
     vec3 result;
     for (int c = 0; c < 3; ++c) {
@@ -75,7 +75,8 @@ vec3 scattered_by_lobe(const FluenceAt& at, vec3 direction, float g) {
     return result;
 }
 
-// By one of Draine's: the lobe's α is lowered, and its g such that the mean cosine is that of fog and light together.
+// Scattering by a Draine lobe: lowers α, and solves for the g whose mean cosine is that of the fog times that of the
+// light.
 vec3 scattered_by_lobe(const FluenceAt& at, vec3 direction, const PhaseLobe& lobe) {
     vec3 result;
     const float mean = static_cast<float>(mean_cosine(lobe)), given = static_cast<float>(lobe.alpha);

@@ -23,12 +23,12 @@ namespace {
 constexpr int64_t block_paths = 512; // traced by one thread at a time
 constexpr int64_t round_blocks = 64; // traced before their flights are put into the grid
 constexpr int slab_cells = 4;        // along x, filled by one thread at a time
-constexpr int64_t pilot_share = 8;   // one path of so many finds out where light is worth following
-constexpr int64_t fewest_hits = 8;   // of the pilot in a stratum, on average
-constexpr int max_side = 32;         // strata
-constexpr double evenly = 0.2;       // share of the paths that the pilot has no say in
+constexpr int64_t pilot_share = 8;   // the pilot traces 1 / pilot_share as many paths, to find where light matters
+constexpr int64_t fewest_hits = 8;   // pilot hits per stratum, on average; coarser strata below that
+constexpr int max_side = 32;         // strata along each side of a light's square, in the pilot
+constexpr double evenly = 0.2;       // fraction of the paths that the pilot does not redistribute
 
-// Cells of one size, at multiples of it in the world: the grid stands still while the fog's bounds change a little.
+// Cells aligned to world-space multiples of their size: the grid stays fixed while the fog's bounds change slightly.
 FluenceGrid grid_over(const Box& fog, int resolution) {
     FluenceGrid grid;
     const float longest = max_component(fog.size());
@@ -85,7 +85,7 @@ void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid, Fl
     }
 }
 
-// Every slab takes the flights in the same order. No octants: nobody asks for them.
+// Every slab adds the flights in the same order. `octants` is empty if it is not needed.
 void add_flights(const std::vector<LightPathResult>& blocks, FluenceGrid& grid, FluenceOctants& octants) {
     parallel_for((grid.size.x + slab_cells - 1) / slab_cells, [&](int64_t slab) {
         const int first = static_cast<int>(slab) * slab_cells, last = std::min(first + slab_cells, grid.size.x);
@@ -94,7 +94,7 @@ void add_flights(const std::vector<LightPathResult>& blocks, FluenceGrid& grid, 
     });
 }
 
-// Follows every other path, from `first` on.
+// Traces every other path, starting at `first`, into the grid.
 void add_half(const Snapshot& snapshot, const RayStrata& strata, const LightPathRules& rules, int64_t paths, int first,
               FluenceGrid& grid, FluenceOctants& octants) {
     const int64_t half = (paths + 1 - first) / 2;
@@ -110,13 +110,13 @@ void add_half(const Snapshot& snapshot, const RayStrata& strata, const LightPath
     }
 }
 
-// What a pilot's paths brought, by stratum.
+// Contributions of the pilot's paths, by stratum.
 struct Pilot {
     int side = 0;
     std::vector<double> squares; // Σ (power · length)²
-    int64_t hits = 0;            // paths that brought anything
+    int64_t hits = 0;            // paths that contributed anything
 
-    // Four strata become one.
+    // Merges each 2×2 strata into one.
     void coarsen() {
         const size_t lights = squares.size() / static_cast<size_t>(side * side);
         const int half = side / 2;
@@ -150,8 +150,8 @@ Pilot fly_pilot(const Snapshot& snapshot, LightPathRules rules, int64_t paths) {
     return pilot;
 }
 
-// Chances of strata in proportion to the root of the mean square of what paths from them bring (Neyman 1934), in
-// strata large enough to be known.
+// Stratum probabilities proportional to the root mean square of their paths' contributions (Neyman 1934), with strata
+// large enough for reliable estimates.
 RayStrata strata_by_pilot(const Snapshot& snapshot, const LightPathRules& rules, int64_t paths) {
     Pilot pilot = fly_pilot(snapshot, rules, std::max<int64_t>(paths / pilot_share, 1));
     while (pilot.side > 1 && pilot.hits < fewest_hits * static_cast<int64_t>(pilot.squares.size())) pilot.coarsen();
@@ -168,7 +168,7 @@ RayStrata strata_by_pilot(const Snapshot& snapshot, const LightPathRules& rules,
     return strata;
 }
 
-// Which surfaces a light shines on and is shadowed by.
+// Adds the surfaces that a light illuminates, and those that shadow it.
 void add_links(int casters, int lit, const Snapshot& snapshot, CacheKey& key) {
     key.add(lit), key.add(casters);
     if (casters >= 0) key.add(snapshot.casters[static_cast<size_t>(casters)].occluders);
@@ -176,7 +176,7 @@ void add_links(int casters, int lit, const Snapshot& snapshot, CacheKey& key) {
     for (const bool instance : snapshot.lit[static_cast<size_t>(lit)]) key.add(instance);
 }
 
-// Where a light's intensity goes.
+// Adds how a light's intensity depends on direction, and its face's radiance on position.
 void add_filter(const Light& light, CacheKey& key) {
     if (light.area && light.area->picture)
         for (const char c : light.area->picture->content) key.add(c);
@@ -235,13 +235,13 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
     rules.reach = light_reach(snapshot);
     FluenceGrid grid = grid_over(fog_bounds(snapshot, rules.reach), settings.resolution);
     if (grid.empty() || !has_sources(snapshot)) return {};
-    rules.reach.grow(grid.bounds); // cells at the rim are filled as others are
+    rules.reach.grow(grid.bounds); // fills cells at the border like all others
     rules.noted = grid.bounds, rules.orders = settings.orders, rules.seed = seed;
     const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
     FluenceOctants octants(surfaces ? grid.values.size() / 12 * 8 : 0, vec4(0));
     const RayStrata strata = strata_by_pilot(snapshot, rules, settings.paths);
 
-    // Two halves, by turns: how far they are apart tells what noise there is.
+    // Two interleaved halves of the paths: their difference measures the noise.
     add_half(snapshot, strata, rules, settings.paths, 0, grid, octants);
     std::vector<float> difference(grid.values.size(), 0.0f);
     std::swap(difference, grid.values);

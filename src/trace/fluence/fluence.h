@@ -1,12 +1,11 @@
-// Light in the fog that has been scattered before: a grid of fluence and flux, filled by the flights of light paths
-// (track-length estimator: Spanier & Gelbard 1969) and smoothed where noise hides the light. What it scatters towards
-// the eye is added to exact single scattering.
+// Multiply scattered light in fog: a grid of fluence and flux, filled from light paths (track-length estimator: Spanier
+// & Gelbard 1969) and denoised. The light it scatters toward the eye is added to exact single scattering.
 //
-// Around each point the light is taken for a Henyey–Greenstein lobe about the flux F with the mean cosine |F|/φ. Fog of
-// mean cosine g turns it into a lobe of mean cosine g|F|/φ: exact for a beam scattered twice in thin fog and for light
-// from all around, and right to the first moment always. Phase functions of several lobes do so lobe by lobe;
-// Draine's lobe becomes one of 3 m² α / (3 + α (1 - m²)) instead of α, m the mean cosine of the light: right to the
-// second moment where g is 0, and for a beam.
+// At each point, the light is modeled as a Henyey–Greenstein lobe about the flux F with mean cosine |F|/φ, φ being the
+// fluence. Fog of mean cosine g scatters it into a lobe of mean cosine g|F|/φ: exact for isotropic light and for a beam
+// scattered twice in thin fog, and always correct to the first moment. Phase functions with several lobes are handled
+// lobe by lobe. In a Draine lobe, 3 m² α / (3 + α (1 - m²)) replaces α, m being the mean cosine of the light: correct
+// to the second moment if g is 0, and for a beam.
 #pragma once
 #include "base/math.h"
 #include "volume/phase.h"
@@ -21,20 +20,19 @@ struct Snapshot;
 struct FluenceGrid {
     Box bounds;
     ivec3 size{0};  // cells
-    float cell = 1; // metres
-    // Twelve numbers per cell [(x·ny + y)·nz + z]: fluence of red, green, blue; then the flux of each, x, y, z by
-    // colour: [3 + 3·axis + colour].
+    float cell = 1; // meters
+    // Twelve numbers per cell [(x·ny + y)·nz + z]: fluence of red, green, blue; then the flux, [3 + 3·axis + color].
     std::vector<float> values;
-    // Per cell, bit `axis`: a surface lies between its light and that of the next cell. Empty = there are no surfaces.
+    // Per cell, bit `axis`: a surface separates its light from that of the next cell on the axis. Empty = no surfaces.
     std::vector<int32_t> walls;
-    // Per cell the surface that cuts it, n·p + d in cells from the lower corner, above 0 on the side whose light the
-    // cell holds; zeros where none does. As many as walls.
+    // Per cell, the plane of the surface that cuts it: n·p + d, p in cells from the grid's lower corner, positive on
+    // the side whose light the cell holds; zeros if none does. As many as walls.
     std::vector<vec4> cuts;
 
     bool empty() const { return values.empty(); }
 };
 
-// Of cache files, in this order.
+// Serialized to cache files in this order.
 template<class Visit> void fields(FluenceGrid& grid, Visit& visit) {
     visit(grid.bounds), visit(grid.size), visit(grid.cell), visit(grid.values), visit(grid.walls), visit(grid.cuts);
 }
@@ -44,22 +42,22 @@ inline size_t cell_index(const FluenceGrid& grid, ivec3 cell) {
            static_cast<size_t>(cell.z);
 }
 
-// A grid's values between cell centres, of those that no wall parts from the cell around the point, or that lie on the
-// point's side of the surface that cuts this cell; zeros outside the bounds.
+// Grid values interpolated between cell centers: of the cells that no wall separates from the point's own or, for a
+// point behind the surface that cuts its cell, of cells behind that surface too. Zeros outside the bounds.
 struct FluenceAt {
-    vec3 fluence{0}, flux[3]{vec3(0), vec3(0), vec3(0)}; // flux: of each colour, by axis
+    vec3 fluence{0}, flux[3]{vec3(0), vec3(0), vec3(0)}; // flux: a vector for each color
 };
 FluenceAt fluence_at(const FluenceGrid& grid, vec3 point);
 
-inline constexpr int draine_steps = 4; // towards the g of such a lobe: the mean cosine is right to 3e-3
+inline constexpr int draine_steps = 4; // fixed-point steps for a Draine lobe's g: mean cosine accurate to 3e-3
 
-// What a particle of scattering cross section 1 sends towards the eye, whose ray has this direction.
+// Light scattered toward the eye per unit of scattering coefficient and length, along a camera ray of this direction.
 vec3 scattered_fluence(const FluenceAt& at, vec3 direction, const Phase& phase);
 
-// The same bits at any thread count.
+// Builds the grid; empty without fog or lights. Bit-identical for any number of threads.
 FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settings, uint32_t seed = 0);
 
-// Cached while lights, media and surfaces stand still (trace/frame_cache.h). Null when settings or scene ask for none.
+// make_fluence(), cached while lights, media and surfaces do not change (trace/frame_cache.h); null if not needed.
 std::shared_ptr<const FluenceGrid> cached_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
                                                   uint32_t seed = 0);
 }

@@ -14,16 +14,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 struct FluenceAt16 {
-    Vec3s fluence, flux[3]; // flux: along each axis, of the colours
+    Vec3s fluence, flux[3]; // flux: along each axis, by color
 };
 
 struct FluenceAxis {
     Ints low, high, home; // cells
-    Floats weight;        // of the high one
-    Floats place;         // in cells from the lower corner
+    Floats weight;        // interpolation weight of `high`
+    Floats place;         // in cells from the grid's lower corner
 };
 
-// How far points lie before the surfaces that cut their home cells, 0 where none does.
+// Planes of the surfaces that cut points' home cells: how far a point lies in front, 0 if none does.
 struct FluenceCuts {
     Floats n[3], d;
 
@@ -44,8 +44,9 @@ HWY_INLINE Floats corner_share(const FluenceAxis& x, const FluenceAxis& y, const
 
 HWY_INLINE Mask16 has_bit(const Ints& value, int bit) { return to_floats(value & bit) > 0.0f; }
 
-// Of each corner (4 = high in x, 2 in y, 1 in z): whether light gets there from the home cell, along x, then y, then z;
-// of points behind the surface that cuts it: whether the corner lies there too, or the home cell where none does.
+// Of each corner (4 = high in x, 2 in y, 1 in z): whether no wall separates it from the home cell, stepping along x,
+// then y, then z. For points behind the surface that cuts the home cell: whether the corner lies behind it too; the
+// home cell itself if none does.
 HWY_INLINE void open_corners(const FluenceGrid& grid, const FluenceAxis& x, const FluenceAxis& y, const FluenceAxis& z,
                              Mask16 (&open)[8]) {
     const auto wall = [&](const Ints& ix, const Ints& iy, const Ints& iz, int axis) HWY_ATTR {
@@ -83,7 +84,7 @@ HWY_INLINE void open_corners(const FluenceGrid& grid, const FluenceAxis& x, cons
                        (none & !(away(x, (corner & 4) != 0) | away(y, (corner & 2) != 0) | away(z, (corner & 1) != 0)));
 }
 
-// As fluence_at().
+// Same as fluence_at().
 HWY_INLINE FluenceAt16 fluence_at16(const FluenceGrid& grid, const Vec3s& point) {
     const Box& box = grid.bounds;
     const Mask16 inside = (point.x >= box.low.x) & (point.x <= box.high.x) & (point.y >= box.low.y) &
@@ -117,7 +118,7 @@ HWY_INLINE FluenceAt16 fluence_at16(const FluenceGrid& grid, const Vec3s& point)
             {{sums[3], sums[4], sums[5]}, {sums[6], sums[7], sums[8]}, {sums[9], sums[10], sums[11]}}};
 }
 
-// As scattered_fluence().
+// Same as scattered_fluence().
 HWY_INLINE Vec3s scattered_fluence(const FluenceAt16& at, const Vec3s& direction, float g) {
     const auto channel = [&](const Floats& fluence, const Floats& x, const Floats& y, const Floats& z) HWY_ATTR {
         const Floats share = g / max(fluence, 1e-30f);
@@ -152,7 +153,7 @@ HWY_INLINE Vec3s scattered_by_draine(const FluenceAt16& at, const Vec3s& directi
             channel(at.fluence.z, at.flux[0].z, at.flux[1].z, at.flux[2].z)};
 }
 
-// By lobes, one after the other. Out of line, as shape_value() is.
+// Sum over a phase function's lobes. Out of line, like shape_value().
 HWY_NOINLINE inline Vec3s scattered_by_lobes(const FluenceAt16& at, const Vec3s& direction, const PhaseShape& shape) {
     if (shape.lobes.empty()) return scattered_fluence(at, direction, shape.mean_cosine);
     Vec3s sum = splat(vec3(0));
@@ -163,7 +164,7 @@ HWY_NOINLINE inline Vec3s scattered_by_lobes(const FluenceAt16& at, const Vec3s&
     return sum;
 }
 
-// What fog scatters of it towards the eye per metre; `extinction(m)` of each medium.
+// Radiance that all media scatter toward the eye per meter; `extinction(m)`: of each medium.
 template<class Extinction>
 HWY_INLINE Vec3s scattered_fluence(const FluenceGrid& grid, const std::vector<Medium>& media, const Vec3s& point,
                                    const Vec3s& direction, const Extinction& extinction) {

@@ -11,7 +11,7 @@ vec2 on_disc(vec2 u) {
     return radius * vec2(std::cos(angle), std::sin(angle));
 }
 
-// A point of a rectangle or disc, even over its face.
+// A uniformly distributed point of a rectangle or disc.
 vec3 face_place(const AreaShape& face, vec2 u) {
     const vec2 place = (face.kind == LightKind::disc ? on_disc(u) : 2.0f * u - 1.0f) * face.half;
     return face.center + place.x * face.right + place.y * face.up;
@@ -31,14 +31,14 @@ void fit_sun(const Box& reach, LightSquare& square) {
         square.start = std::min(square.start, glm::dot(point, square.axis));
         end = std::max(end, glm::dot(point, square.axis));
     }
-    // Slanted rays of a soft sun pass beside the box's outline.
+    // Slanted rays of a soft sun may start outside the box's silhouette.
     const float slant = std::tan(std::min(square.light->angle, 1.5f)) * (end - square.start);
     square.low -= slant, square.high += slant;
     const vec2 size = square.high - square.low;
     square.power = square.light->intensity * (size.x * size.y);
 }
 
-// Directions of a local light: those of a spot's cone, or those in which the box lies.
+// Directions of a local light: a spot's cone, or the cone around the box.
 void fit_directions(const Box& reach, LightSquare& square) {
     const Light& light = *square.light;
     vec3 axis = light.direction;

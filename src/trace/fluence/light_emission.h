@@ -1,4 +1,4 @@
-// Rays of a light into a box, as a unit square. Internal to light paths.
+// Maps a unit square to the rays that a light sends into a box. Internal to light paths.
 #pragma once
 #include "base/math.h"
 
@@ -13,23 +13,24 @@ struct Snapshot;
 struct LightSquare {
     const Light* light = nullptr;
     vec3 axis{0}, across{0}, up{0}; // orthonormal
-    // Suns: the rectangle across the axis that all rays into the box pass, and a place before it along the axis.
+    // Suns: the rectangle perpendicular to the axis that contains all rays into the box, and its position along the
+    // axis, in front of the box.
     vec2 low{0}, high{0};
     float start = 0;
-    float lowest_cosine = -1; // others: of directions, from the axis
-    vec3 power{0};            // of an even light of this intensity over the whole square
-    // The environment's: a direction by its light, through the disc across it that covers the box.
-    std::shared_ptr<const Environment> environment; // null = a light's
-    std::shared_ptr<const Light> as_light;          // what fog and surfaces make of it: `light` points there
+    float lowest_cosine = -1; // local lights: smallest cosine of the directions with the axis
+    vec3 power{0};            // of a uniform light of this intensity over the whole square
+    // Environment: a direction sampled by radiance, and the disc perpendicular to it that covers the box.
+    std::shared_ptr<const Environment> environment; // null for other lights
+    std::shared_ptr<const Light> as_light;          // its scales, shadows and links; `light` points here
     vec3 center{0};
     float radius = 0;
 
-    // The ray at a place of the square with 1 = all of `power`; `soft` picks a point of a soft light.
+    // The ray at a point of the unit square; `soft` chooses a point of a soft light.
     Ray ray(vec2 place, vec2 soft) const;
-    // Share of `power` along it.
+    // Factor on `power` along that ray.
     vec3 share(const Ray& ray) const;
 };
 
-// Of every light of the snapshot, in their order, and of its environment.
+// Squares of all lights of the snapshot, in their order, then of its environment.
 std::vector<LightSquare> squares_of(const Snapshot& snapshot, const Box& reach);
 }

@@ -11,20 +11,20 @@
 
 namespace tyndall {
 namespace {
-constexpr int certain_orders = 4;      // scatterings before Russian roulette may end a path
-constexpr int max_flights = 65536;     // of a path, BLEND surfaces included: more than roulette ever leaves
+constexpr int certain_orders = 4;      // scattering events before Russian roulette may end a path
+constexpr int max_flights = 65536;     // per path, passed BLEND surfaces included; Russian roulette ends it sooner
 constexpr size_t walkers_at_once = 16; // one packet of the ray tracer
 
 bool is_endless(const Medium& medium) { return !is_finite(medium.world_bounds.size()); }
 
-// The end of a path.
+// The current vertex of a path.
 struct PathVertex {
     Ray ray;
-    vec3 light{0}; // power at its start, over the chance of the path
-    vec3 share{1}; // of it that is left
+    vec3 light{0}; // power at the light, over the path's probability
+    vec3 share{1}; // throughput
     int light_index = 0, order = 0, flights = 0;
     size_t stratum = 0;
-    float flown = 0; // power · length so far
+    float flown = 0; // Σ power · length of the recorded flights
     bool walking = false;
     RandomStream random;
 
@@ -39,7 +39,7 @@ struct Walk {
     const RayStrata& strata;
     const LightPathRules& rules;
     std::span<const LightSquare> squares;
-    bool endless; // whether any fog is
+    bool endless; // whether any medium is unbounded
     LightPathResult& result;
 };
 
@@ -71,7 +71,7 @@ PathVertex start(const Walk& walk, int64_t index, int64_t total) {
     return walker;
 }
 
-// Notes the part of a flight that counts.
+// Records the part of a flight inside rules.noted, unless its light comes straight from the source.
 void note(const Walk& walk, PathVertex& walker, float length) {
     if (walker.order == 0 || walker.order >= walk.rules.orders) return;
     const Interval<float> inside = clip(walk.rules.noted, walker.ray.origin, walker.ray.direction, {0, length});
@@ -81,13 +81,13 @@ void note(const Walk& walk, PathVertex& walker, float length) {
     walker.flown += luminance(light) * inside.length();
 }
 
-// What the light's range leaves of light that comes straight from it.
+// Attenuation by the light's range, for light straight from it.
 float ranged(const Walk& walk, const PathVertex& walker, vec3 point) {
     const Light& light = *walk.squares[static_cast<size_t>(walker.light_index)].light;
     return is_distant(light) ? 1 : range_window(glm::length(point - light.position), light.range);
 }
 
-// Goes on from a point with a share of the light, unless roulette ends the path.
+// Continues the path with a new ray and a factor on its throughput, unless Russian roulette ends it.
 void turn(const Walk& walk, PathVertex& walker, Ray ray, vec3 share) {
     walker.share *= share, walker.ray = ray;
     ++walker.order;
@@ -109,8 +109,8 @@ void scatter(const Walk& walk, PathVertex& walker, const Optics& optics, float d
     turn(walk, walker, {point, sample_phase(optics.phase, walker.ray.direction, walker.pair())}, share);
 }
 
-// Lambert. Light that a surface does not cut off passes and is reflected as well, in half of the paths each; what does
-// not shine on a surface is not reflected.
+// Lambertian reflection, or passage. Light from a source that the surface does not shadow is both transmitted and
+// reflected, each in half of the paths; light that is not linked to the surface is not reflected.
 void meet(const Walk& walk, PathVertex& walker, const SurfacePoint& surface, float distance) {
     const Light& light = *walk.squares[static_cast<size_t>(walker.light_index)].light;
     const bool lit = walker.order > 0 || is_lit(light, walk.snapshot, surface.instance);
@@ -137,7 +137,7 @@ void meet(const Walk& walk, PathVertex& walker, const SurfacePoint& surface, flo
     turn(walk, walker, {surface.position + surface.face_normal * shadow_offset(surface.position), direction}, share);
 }
 
-// One flight of a walker, up to what it meets at `wall`.
+// One flight of a path, up to a collision or the surface at distance `wall`.
 void fly(const Walk& walk, PathVertex& walker, float wall, const auto& surface_at) {
     float nearest = std::min(wall, walker.ray.t_max);
     const Medium* hit = nullptr;
@@ -154,7 +154,7 @@ void fly(const Walk& walk, PathVertex& walker, float wall, const auto& surface_a
     meet(walk, walker, surface_at(), nearest);
 }
 
-// Lets up to sixteen walkers make one flight each.
+// Traces one flight for each of up to sixteen paths.
 void fly_all(const Walk& walk, std::span<PathVertex*> walkers) {
     const Occluders* occluders = walk.snapshot.occluders.get();
     Ray rays[walkers_at_once];
@@ -176,7 +176,7 @@ void fly_all(const Walk& walk, std::span<PathVertex*> walkers) {
 
 Box light_reach(const Snapshot& snapshot) {
     Box reach;
-    float thickest = 0; // of endless fog, 1/m
+    float thickest = 0; // largest extinction of unbounded fog, 1/m
     for (const Medium& medium : snapshot.media) {
         if (is_endless(medium))
             thickest = std::max(thickest, medium.majorant());
@@ -184,7 +184,7 @@ Box light_reach(const Snapshot& snapshot) {
             reach.grow(medium.world_bounds);
     }
     if (snapshot.occluders && !snapshot.occluders->empty()) reach.grow(snapshot.occluders->bounds());
-    if (!reach.empty()) { // surfaces that end the scene lie inside
+    if (!reach.empty()) { // keeps surfaces at the scene's border inside
         const float margin = 1e-3f * max_component(reach.size()) + shadow_offset(glm::max(-reach.low, reach.high));
         reach.low -= margin, reach.high += margin;
     }

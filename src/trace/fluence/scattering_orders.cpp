@@ -11,9 +11,9 @@
 
 namespace tyndall {
 namespace {
-// 1 minus the chance to leave an even ball uncollided from a place picked evenly in it, in any direction.
+// Probability of a collision in a homogeneous sphere of optical radius a, from a random point in a random direction.
 double chance_to_stay(double a) {
-    if (a < 0.03) return a * (0.75 - a * (0.4 - a / 6)); // the series of the form below
+    if (a < 0.03) return a * (0.75 - a * (0.4 - a / 6)); // series of the closed form below
     return 1 - 3 / (8 * a * a * a) * (2 * a * a - 1 + (1 + 2 * a) * std::exp(-2 * a));
 }
 }
@@ -45,7 +45,7 @@ ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths, uint32_t see
         trace_light_paths(snapshot, strata, rules, b * each, each, batches * each, results[static_cast<size_t>(b)]);
     });
 
-    // Ratio of means, its spread by the batches' residuals (Cochran 1977, section 2.11).
+    // Ratio estimator, with its variance from the batches' residuals (Cochran 1977, section 2.11).
     double once = 0, more = 0, squares = 0;
     int64_t seen = 0;
     for (const LightPathResult& result : results) {
@@ -58,9 +58,9 @@ ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths, uint32_t see
         const double residual = result.scattered_more - ratio * result.scattered_once;
         squares += residual * residual;
     }
-    constexpr double student = 2.0; // of 63 degrees of freedom
+    constexpr double student = 2.0; // Student's t, 63 degrees of freedom
     const double spread = student * std::sqrt(squares * batches / (batches - 1.0)) / once;
-    const double unseen = 3 / static_cast<double>(seen); // the rule of three: 95 % where nothing was seen
+    const double unseen = 3 / static_cast<double>(seen); // the rule of three: 95 % bound if no event was seen
     const double high = ratio + std::max(spread, unseen);
     const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
     return {ratio, std::max(0.0, ratio - spread), surfaces ? high : std::min(high, truncation_bound(snapshot, 1))};

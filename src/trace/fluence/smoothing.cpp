@@ -14,7 +14,7 @@ void for_cells(size_t count, const auto& visit) {
     });
 }
 
-// Means of three cells `stride` apart along an axis, the middle one twice; of `count` numbers per cell.
+// Filters along an axis by 1/4, 1/2, 1/4, taps `stride` apart, `count` numbers per cell; reflects at walls and borders.
 template<size_t count> void smooth_along(int axis, int stride, const FluenceGrid& grid, std::vector<float>& values) {
     const int across = (axis + 1) % 3, up = (axis + 2) % 3, length = grid.size[axis];
     parallel_for(int64_t{grid.size[across]} * grid.size[up], [&](int64_t line) {
@@ -25,7 +25,7 @@ template<size_t count> void smooth_along(int axis, int stride, const FluenceGrid
             return cell_index(grid, cell);
         };
         std::vector<float> before(static_cast<size_t>(length) * count);
-        std::vector<int> walls(static_cast<size_t>(length), 0); // up to each cell
+        std::vector<int> walls(static_cast<size_t>(length), 0); // walls before each cell
         for (int i = 0; i < length; ++i) {
             std::copy_n(values.data() + count * cell_at(i), count, before.data() + count * static_cast<size_t>(i));
             if (i > 0 && !grid.walls.empty())
@@ -50,7 +50,7 @@ template<size_t count> void smooth_by(int stride, const FluenceGrid& grid, std::
     for (int axis = 0; axis < 3; ++axis) smooth_along<count>(axis, stride, grid, values);
 }
 
-// Powers of a detail, [2 · cell + which]: of all that is there, and of its noise.
+// Power of a detail level, [2 · cell + which]: of the whole detail, and of its noise.
 std::vector<float> powers_of(const std::vector<float>& finer, const std::vector<float>& coarser,
                              const std::vector<float>& finer_noise, const std::vector<float>& coarser_noise) {
     std::vector<float> powers(finer.size() / 6);
@@ -68,14 +68,14 @@ std::vector<float> powers_of(const std::vector<float>& finer, const std::vector<
 
 void smooth(std::vector<float> difference, FluenceGrid& grid) {
     const size_t cells = grid.values.size() / 12;
-    std::vector<float> details(grid.values.size(), 0.0f), kept(cells, 0.0f); // kept: share of the last detail
+    std::vector<float> details(grid.values.size(), 0.0f), kept(cells, 0.0f); // kept: fraction of the current detail
     for (int level = 0; level < levels; ++level) {
         const int stride = 1 << level;
         std::vector<float> coarser = grid.values, coarser_noise = difference;
         smooth_by<12>(stride, grid, coarser), smooth_by<12>(stride, grid, coarser_noise);
         std::vector<float> powers = powers_of(grid.values, coarser, difference, coarser_noise);
         for (int around = 1; around <= stride; around *= 2) smooth_by<2>(around, grid, powers);
-        // No less than of finer details: so each cell is a mean of the filters, and light stays above 0.
+        // No less than of finer details: so each cell is a convex combination of the filters, and light stays positive.
         for_cells(cells, [&](size_t cell) {
             const float all = powers[2 * cell], noise = powers[2 * cell + 1];
             if (all > 0) kept[cell] = std::max(kept[cell], 1 - noise / all);

@@ -1,11 +1,11 @@
-// Noise of a grid of fluence, taken out where it hides the light.
+// Denoising of fluence grids.
 #pragma once
 #include "trace/fluence/fluence.h"
 
 namespace tyndall {
-// A local Wiener filter (Wiener 1949). The grid is split into details by filters of 3, 7 and 15 cells; of each detail
-// the share is kept that is light, by the power of light and noise nearby. The noise is `difference`: half of what one
-// half of the paths gives more than the other, as many values. Light that reaches walls or the grid's borders comes
-// back.
+// A local Wiener filter (Wiener 1949). The grid is split into details by filters of 3, 7 and 15 cells; of each detail,
+// the fraction that is signal is kept, by the power of signal and noise nearby. `difference` is the noise, with as many
+// values: half the difference between the estimates of the two halves of the paths. Reflects at walls and at the grid's
+// borders.
 void smooth(std::vector<float> difference, FluenceGrid& grid);
 }

@@ -8,22 +8,22 @@
 
 namespace tyndall {
 namespace {
-constexpr int probes = 16; // of a cut cell
+constexpr int probes = 16; // rays per cut cell
 constexpr uint32_t use_probe = 0xf1e7u;
 
 struct Cells {
     const Occluders& occluders;
     const FluenceOctants& octants;
     FluenceGrid& grid;
-    std::vector<float>& difference; // scaled as the grid is
+    std::vector<float>& difference; // scaled like the grid
     Box surfaces{};                 // their bounds, in cells
-    std::vector<vec3> lit{};        // a place in the light of each cell, in cells; the centre of dark ones
+    std::vector<vec3> lit{};        // a lit point of each cell, in cells; the center if it is dark
 
     size_t index(ivec3 cell) const { return cell_index(grid, cell); }
     vec3 world(vec3 place) const { return grid.bounds.low + grid.cell * place; }
 };
 
-// Up to sixteen segments from one place to another.
+// Up to sixteen segments between pairs of points.
 struct Segments {
     Occluders::ShadowRays rays;
     int count = 0;
@@ -34,7 +34,7 @@ struct Segments {
         const vec3 direction = length > 0 ? (to - from) / length : vec3(1, 0, 0);
         rays.set(static_cast<size_t>(count++), {from, direction, length});
     }
-    // Whether any light gets along each.
+    // Whether any light passes along each.
     std::array<bool, 16> open(const Occluders& occluders) const {
         alignas(64) float passing[16] = {};
         occluders.transmission(rays, passing);
@@ -44,7 +44,7 @@ struct Segments {
     }
 };
 
-// Where most light flies in a cell.
+// Mean position of the light in a cell's brightest octant.
 vec3 lit_place(const Cells& cells, ivec3 cell) {
     const vec4* octants = &cells.octants[8 * cells.index(cell)];
     const vec4* most = std::max_element(octants, octants + 8, [](vec4 a, vec4 b) { return a.w < b.w; });
@@ -62,7 +62,7 @@ bool may_meet(const Cells& cells, vec3 a, vec3 b) {
            glm::all(glm::greaterThanEqual(high, cells.surfaces.low));
 }
 
-// Walls between the cells of a line along an axis.
+// Finds the walls between the cells of a line along an axis.
 void find_line(const Cells& cells, ivec3 cell, int axis) {
     const int last = cells.grid.size[axis] - 1;
     for (int first = 0; first < last; first += 16) {
@@ -94,10 +94,10 @@ bool is_cut(const Cells& cells, ivec3 cell) {
     return false;
 }
 
-// What rays from a place to points spread over a cell meet.
+// What rays from a cell's lit point to points spread over the cell hit.
 struct Probed {
-    int seen = 0;         // points
-    vec3 met{0}, side{0}; // means over those that are not: where, in cells, and which way the surface faces
+    int seen = 0;         // visible points
+    vec3 met{0}, side{0}; // over the others: mean hit point, in cells, and sum of face normals
 };
 
 Probed probe(const Cells& cells, ivec3 cell) {
@@ -127,7 +127,7 @@ Probed probe(const Cells& cells, ivec3 cell) {
     return result;
 }
 
-// The share of a cell's light that shines where most of it does.
+// Fraction of a cell's light on the side of its lit point.
 float share_here(const Cells& cells, ivec3 cell) {
     const vec4* octants = &cells.octants[8 * cells.index(cell)];
     const vec3 from = cells.world(cells.lit[cells.index(cell)]);
@@ -139,7 +139,7 @@ float share_here(const Cells& cells, ivec3 cell) {
     return all > 0 ? here / all : 1;
 }
 
-// Keeps of a cell the light that shines where most of it does, over the part of the cell that lies there.
+// Keeps the light of a cell on the side of its lit point, averaged over that part of the cell.
 void keep_one_side(const Cells& cells, ivec3 cell) {
     const Probed probed = probe(cells, cell);
     const size_t first = 12 * cells.index(cell);

@@ -12,7 +12,7 @@
 
 namespace tyndall {
 namespace {
-// A way from each point to a place that glows, and what it sends on of its light with nothing in the way.
+// A ray from each point to an emitting point, and the unoccluded light reflected from there.
 struct EmittedRays {
     Occluders::ShadowRays rays{};
     vec3 light[16] = {};
@@ -24,7 +24,7 @@ struct EmittedRays {
     }
 };
 
-// `share`: of what is found here, over the chance of both ways that is found here alone.
+// `share`: density used in the balance heuristic over the actual one; 1 for places picked by power.
 void set_place(const SurfacePoint& point, const EmissivePlace& place, float share, size_t i, EmittedRays& to) {
     const vec3 offset = place.position - point.position;
     const float away = glm::length(offset), cosine = away > 0 ? glm::dot(point.normal, offset) / away : 0;
@@ -49,7 +49,7 @@ void shine(const Snapshot& snapshot, std::span<const SurfacePoint> points, const
     }
 }
 
-// More numbers for the same point and pair.
+// Further random numbers for a point, seeded by its sample pair.
 RandomStream numbers_after(vec2 pair) {
     return {hash(std::bit_cast<uint32_t>(pair.x), std::bit_cast<uint32_t>(pair.y))};
 }

@@ -1,4 +1,4 @@
-// Light of what glows by itself, fog and other surfaces, on Lambert surfaces.
+// Light of emissive fog and emissive surfaces on Lambertian surfaces.
 #pragma once
 #include "base/math.h"
 
@@ -11,7 +11,7 @@ struct EmissiveTriangles;
 struct Snapshot;
 struct SurfacePoint;
 
-// What is aimed at.
+// What is sampled directly.
 struct Emitters {
     std::shared_ptr<const EmissiveBricks> fire;        // null = none
     std::shared_ptr<const EmissiveTriangles> surfaces; // null = none
@@ -20,9 +20,9 @@ struct Emitters {
 };
 Emitters emitters_of(const Snapshot& snapshot);
 
-// Adds to the radiance leaving up to 16 points, as of shade_surfaces(), that of the emitters, through the fog and
-// shadowed by all surfaces. Each pair of numbers picks a point of a glowing surface; and of the fire a place by power,
-// and a direction by the cosine with places by brightness on it, which share it (balance heuristic).
+// Adds the emitters' light to the radiance leaving up to 16 points, as in shade_surfaces(): attenuated by fog and
+// shadowed by all surfaces. Each sample pair chooses a point on an emissive surface; and in emissive fog a point by
+// power, and a cosine-distributed direction with points by brightness along it, combined by the balance heuristic.
 void add_emitted_light(const Emitters& emitters, const Snapshot& snapshot, std::span<const SurfacePoint> points,
                        std::span<const vec2> u, std::span<vec3> radiance);
 }

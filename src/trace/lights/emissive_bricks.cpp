@@ -36,7 +36,7 @@ void add_field(uint32_t number, EmissiveBricks& fire, std::vector<double>& power
         if (!(power > 0)) continue;
         fire.bricks.push_back({number, static_cast<uint32_t>(cell)}), powers.push_back(power);
     }
-    // What an average line through the box finds: the mean of the bricks' maxima, over the length of the box.
+    // Expected brightness integral of a line through the box: the mean of the bricks' maxima times the box's length.
     const double across = max_component(field.world_bounds.size());
     const double mean = brightest / static_cast<double>(pool.index.size());
     chances.line_scale = static_cast<float>(mean * across > 0 ? 1 / (mean * across) : 0);
@@ -102,7 +102,7 @@ EmissivePlace pick_emissive_place(const EmissiveBricks& fire, float u, vec3 v) {
 }
 
 namespace {
-// Of one cell, all of it even.
+// A point uniformly distributed within one cell.
 struct PickedCell {
     double distance = 0, inverse_density = 0;
 };

@@ -1,5 +1,5 @@
-// Fog that gives off light by grids, as a target: points in it are picked by the power of its bricks, and along lines
-// by the brightness of their cells.
+// Importance sampling of fog that emits by grids: points by the power of its bricks, and along lines by the brightness
+// of their cells.
 #pragma once
 #include "volume/medium.h"
 
@@ -12,37 +12,36 @@ struct Snapshot;
 
 struct EmissiveBricks {
     struct Brick {
-        uint32_t medium = 0; // of the fields
-        uint32_t cell = 0;   // of its bricks' index
+        uint32_t medium = 0; // index into `fields`
+        uint32_t cell = 0;   // index into its BrickPool::index
     };
-    // Of each field.
+    // Sampling densities of a field.
     struct FieldChances {
-        std::vector<float> per_volume; // of each cell: chance per m³ with which its points are picked
-        float line_scale = 0;          // brightest light of a brick, its maximum 1, to chance per metre of a line
+        std::vector<float> per_volume; // of the points of each cell, 1/m³
+        float line_scale = 0;          // factor from a brick's maximum to the density along a line, 1/m
     };
     std::vector<Medium> fields;     // media that only emit
-    std::vector<Brick> bricks;      // those with light in them
-    std::vector<double> cumulative; // chance of the bricks up to and with each
+    std::vector<Brick> bricks;      // those that emit
+    std::vector<double> cumulative; // probability of the bricks up to and including each
     std::vector<FieldChances> chances;
 };
 
-// Of the media of a snapshot that only emit; null where none gives off light. Made once for as long as they stay as
-// they are.
+// The emission of a snapshot's media that only emit; null if there is none. Cached while they do not change.
 std::shared_ptr<const EmissiveBricks> emissive_bricks(const Snapshot& snapshot);
 
-// A place in the fire, and the two chances with which it is found: by picking it, and by a line through it.
+// An emitting point and the two densities it is sampled with: by volume, and along a line through it.
 struct EmissivePlace {
-    vec3 position{0}, emission{0}; // emission: radiance per metre
+    vec3 position{0}, emission{0}; // emission: radiance per meter
     float density = 0;             // per m³
-    float line_density = 0;        // per metre: a guess at that of emission_on_line(), the same from both sides
+    float line_density = 0;        // 1/m: approximates that of emission_on_line(), by position alone
 };
 EmissivePlace pick_emissive_place(const EmissiveBricks& fire, float u, vec3 v);
 EmissivePlace emissive_place_at(const EmissiveBricks& fire, size_t field, vec3 position);
 
-// A place on a line 0..t_max, picked in proportion to how bright each cell of the line can be.
+// A point on a line 0..t_max, sampled in proportion to the maximum brightness of each cell along it.
 struct EmissionOnLine {
     EmissivePlace place;
-    float distance = 0, inverse_density = 0; // metres per unit of chance; 0 = nothing was found
+    float distance = 0, inverse_density = 0; // meters; inverse_density: 0 = nothing was found
 };
 EmissionOnLine emission_on_line(const EmissiveBricks& fire, size_t field, const Ray& line, float u);
 }

@@ -63,7 +63,7 @@ EmissivePoint pick_glow_point(const EmissiveTriangles& glow, const Occluders& su
     const size_t index = std::min<size_t>(found - glow.cumulative.begin(), glow.triangles.size() - 1);
     const EmissiveTriangle& triangle = glow.triangles[index];
 
-    // Even over the triangle: (1-√x, √x(1-y), √x y).
+    // Uniform over the triangle: (1-√x, √x(1-y), √x y).
     const float root = std::sqrt(v.x);
     Hits hit;
     hit.instance[0] = triangle.instance, hit.triangle[0] = triangle.triangle;

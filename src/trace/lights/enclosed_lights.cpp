@@ -14,12 +14,12 @@
 namespace tyndall {
 namespace {
 constexpr int directions = 256;
-constexpr float near_share = 0.1f;    // of the scene's extent: surfaces farther away are those of a room
-constexpr double all_blocked = 0.95;  // of the light; the neck of an open bulb is smaller, a shade's openings larger
-constexpr double of_one_object = 0.8; // of the light
-constexpr double around_spot = 0.75;  // of all directions: a spot's can; a surface that it shines on takes half
+constexpr float near_share = 0.1f;    // of the scene's extent: surfaces farther away count as a room
+constexpr double all_blocked = 0.95;  // of the light: an open bulb's neck lets out less than the rest, a shade more
+constexpr double of_one_object = 0.8; // fraction of the light
+constexpr double around_spot = 0.75;  // of all directions: a spot's housing blocks more, an illuminated surface half
 
-// Even over the directions whose cosine with the light's is above `lowest` (a Fibonacci lattice).
+// Uniform over the directions whose cosine with the light's exceeds `lowest` (a Fibonacci lattice).
 vec3 direction_of(const Light& light, float lowest, int i) {
     const float golden = 2.3999632f; // π (3 - √5)
     const float cosine = 1 - (1 - lowest) * (static_cast<float>(i) + 0.5f) / directions;
@@ -29,12 +29,12 @@ vec3 direction_of(const Light& light, float lowest, int i) {
     return sine * std::cos(turned) * x + sine * std::sin(turned) * y + cosine * light.direction;
 }
 
-// What is around a light, or before it, up to a distance; ends early where less than `least` is blocked.
+// What blocks a light within a distance; the search ends once less than `least` can be blocked.
 struct Surroundings {
-    double blocked = 0;            // share of its light
-    std::map<int, double> by_node; // of it, by what it meets first
-    std::map<int, int> instance;   // of a node, one that was met
-    float farthest = 0;            // of the surfaces met
+    double blocked = 0;            // fraction of its light
+    std::map<int, double> by_node; // of that, by the node that is hit first
+    std::map<int, int> instance;   // an instance of each node that was hit
+    float farthest = 0;            // distance of a hit
 };
 
 Surroundings look_around(const Light& light, float lowest, double least, const Occluders& occluders, const Scene& scene,
@@ -43,7 +43,7 @@ Surroundings look_around(const Light& light, float lowest, double least, const O
     const float start = std::max(light.radius, shadow_offset(light.position));
     double open = 0;
     for (int i = 0; i < directions; ++i) {
-        // All over the lattice from the start: most lights are known to be free after a few rays.
+        // In scattered order, so that most lights turn out to be free after a few rays.
         const Ray ray{light.position, direction_of(light, lowest, i * 97 % directions), distance};
         Hits hits;
         occluders.closest({&ray, 1}, start, hits);
@@ -59,7 +59,7 @@ Surroundings look_around(const Light& light, float lowest, double least, const O
     return around;
 }
 
-// Whether a camera is inside too, or sees the light.
+// Whether a camera is inside as well, or sees the light.
 bool seen_by_camera(const Light& light, const Snapshot& snapshot, const Occluders& occluders, float farthest) {
     for (size_t i = 0; i < snapshot.scene->cameras.size(); ++i) {
         const vec3 eye = camera_at(*snapshot.scene, static_cast<int>(i), snapshot.seconds).position;
@@ -110,7 +110,7 @@ std::vector<std::string> enclosed_lights(const Snapshot& snapshot) {
 std::vector<std::string> enclosed_lights(const Scene& scene) {
     Scene clear = scene;
     std::erase_if(clear.media, [](const MediumSource& medium) { return medium.kind == MediumKind::vdb; });
-    for (MediumSource& medium : clear.media) { // the scene is as large as with them
+    for (MediumSource& medium : clear.media) { // keeps the scene's extent
         if (medium.kind == MediumKind::noise) medium.bounds = medium.recipe->bounds;
         medium.kind = MediumKind::homogeneous;
     }

@@ -1,4 +1,4 @@
-// Tables of directions: the mean of the bilinear map over each cell, so that no direction with light is left out.
+// Sampling tables of environment maps: means of the bilinear map over each cell, so that no light is missed.
 #include "trace/lights/environment.h"
 
 #include "base/error.h"
@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_cells = 2048; // across; larger maps are looked at in blocks
+constexpr int max_cells = 2048; // across; larger maps are sampled in blocks of texels
 constexpr int gradient_rows = 256;
 
 double row_edge(const DirectionTable& table, int cell_row) {
@@ -22,7 +22,7 @@ double column_edge(const DirectionTable& table, int cell_column) {
     return static_cast<double>(std::min(cell_column * table.factor, table.texels.x)) / table.texels.x;
 }
 
-// The bilinear picture averaged over one texel: its neighbours weigh 1/8, itself 3/4, each way.
+// The bilinear image averaged over one texel: weights 1/8, 3/4, 1/8 along each axis.
 vec3 mean_in_texel(const Image<vec3>& image, int x, int y) {
     const int columns[] = {(x + image.size.x - 1) % image.size.x, x, (x + 1) % image.size.x};
     const int rows[] = {std::max(y - 1, 0), y, std::min(y + 1, image.size.y - 1)};
@@ -52,7 +52,7 @@ DirectionTable empty_table(const BackgroundNow& map) {
     return table;
 }
 
-// Cumulative chances, and the densities of cells from what each holds.
+// Cumulative probabilities, and the densities of cells from their power.
 void add_chances(const std::vector<double>& powers, double total, DirectionTable& table) {
     table.rows.push_back(0);
     for (int y = 0; y < table.cells.y; ++y) {
@@ -93,7 +93,7 @@ std::shared_ptr<const DirectionTable> make_table(const BackgroundNow& map) {
     return std::make_shared<const DirectionTable>(std::move(table));
 }
 
-// The place of a number among cumulative ones, and how far it is from there to the next.
+// The interval of a cumulative distribution that a number falls in, and its relative position there.
 struct PlaceInTable {
     int index = 0;
     double share = 0;

@@ -1,4 +1,4 @@
-// Light from all around on Lambert surfaces, through the fog.
+// Environment light on Lambertian surfaces, attenuated by fog.
 #include "trace/lights/environment.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/surface.h"
@@ -6,13 +6,13 @@
 
 namespace tyndall {
 namespace {
-// A direction for each point, and what comes from there with nothing in the way.
+// A direction for each point, and the unoccluded light reflected from there.
 struct SkyDirections {
     vec3 direction[16], light[16];
 };
 
-// What a point scatters of the light from a direction that is picked with a chance of `density`, 1/sr, by the light,
-// and by the cosine.
+// Radiance reflected from a direction, over the sum of the densities (balance heuristic) of sampling it by radiance,
+// `density` in 1/sr, and by cosine.
 vec3 weighted(const SurfacePoint& point, vec3 direction, vec3 radiance, float density) {
     const float cosine = std::max(glm::dot(point.normal, direction), 0.0f);
     return density + cosine > 0 ? point.base_color * radiance * (cosine / pi / (density + cosine / pi)) : vec3(0);

@@ -24,7 +24,7 @@ FaceHit visible_face(const Snapshot& snapshot, const Ray& ray) {
 }
 
 namespace {
-// A way from each surface to a point of the face, and what comes along it.
+// A ray from each surface point to a point of the face, and the unoccluded irradiance along it.
 struct FaceRays {
     Occluders::ShadowRays rays{};
     vec3 light[16];

@@ -1,4 +1,4 @@
-// Lights that are faces: what the camera sees of them, and what they bring to surfaces.
+// Area lights: how the camera sees them, and their light on surfaces.
 #pragma once
 #include "base/math.h"
 
@@ -9,16 +9,16 @@ struct Light;
 struct Snapshot;
 struct SurfacePoint;
 
-// Whether the camera may see the face of any light; and the nearest one that a ray meets, -1 = none.
+// Whether any light's face is visible to the camera; and the nearest one that a ray hits, -1 = none.
 bool shows_faces(const Snapshot& snapshot);
 struct FaceHit {
     int light = -1;
-    float distance = infinity; // metres
+    float distance = infinity; // meters
 };
 FaceHit visible_face(const Snapshot& snapshot, const Ray& ray);
 
-// Adds the irradiance of a light with a face to up to 16 Lambert surfaces, cosine and surface_scale included, past
-// surfaces and, with `dimmed`, through the fog. `u`: points × n pairs of numbers, that pick n points of the face each.
+// Adds the irradiance of an area light at up to 16 Lambertian surfaces, cosine and surface_scale included, shadowed
+// and, with `dimmed`, attenuated by fog. `u`: points × n sample pairs, which choose n points of the face for each.
 void add_face_light(const Snapshot& snapshot, const Light& light, bool dimmed, std::span<const SurfacePoint> points,
                     std::span<const vec2> u, std::span<vec3> irradiance);
 }

@@ -20,14 +20,14 @@ HWY_INLINE Vec3s across(const LightFilter& filter, const LightAxes& axes, const 
     return {dot(direction, splat(axes.right)), dot(direction, splat(axes.up)), dot(direction, splat(filter.direction))};
 }
 
-// Two rows of a table with a share of the second.
+// Linear interpolation between table entries `index` and `index + 1`.
 HWY_INLINE Floats between_neighbours(const float* values, const Ints& index, const Floats& share) {
     Floats first, second;
     gather_pairs(values, index, first, second);
     return fused(share, second - first, first);
 }
 
-// As profile_share() of scene/photometry/ies_profile.h. Half angles: none of them is steep.
+// Same as profile_share() of scene/photometry/ies_profile.h. Half-angle formulas keep it well conditioned.
 HWY_INLINE Floats profile_share16(const IesProfile& profile, const Vec3s& at) {
     constexpr float tiny = 1e-20f, rounding = 1e-5f;
     const Floats sine = sqrt(fused(at.x, at.x, at.y * at.y));
@@ -53,12 +53,12 @@ HWY_INLINE Floats profile_share16(const IesProfile& profile, const Vec3s& at) {
     return zero_unless(inside, fused(column - before, next - one, one));
 }
 
-// Places of directions in a gobo, and what to read there.
+// Texel positions of directions in a gobo, and lookups there.
 struct GoboPlaces {
     const Gobo::Level& level;
     Ints index;
-    Floats right, down; // shares of the next texel
-    Mask16 ahead;       // directions that meet the picture's plane
+    Floats right, down; // interpolation weights of the next texel
+    Mask16 ahead;       // directions that hit the gobo's plane
 
     HWY_INLINE GoboPlaces(const LightFilter& filter, const Vec3s& direction, int which)
         : level(filter.gobo->levels[static_cast<size_t>(which)]) {
@@ -83,7 +83,7 @@ struct GoboPlaces {
     }
 };
 
-// One channel of the factors on a light's intensity, of a gobo as blurred as one of its levels.
+// One channel of the factor on a light's intensity, with the gobo at a mip level.
 HWY_INLINE Floats filter_channel(const LightFilter& filter, const Vec3s& direction, int channel, int level) {
     Floats factor = 1.0f;
     if (filter.profile) factor = profile_share16(*filter.profile, across(filter, filter.profile_axes, direction));
@@ -91,7 +91,7 @@ HWY_INLINE Floats filter_channel(const LightFilter& filter, const Vec3s& directi
     return factor * GoboPlaces(filter, direction, level).value(std::min(channel, filter.gobo->planes - 1));
 }
 
-// The largest channel of the factors, and what the others are of it.
+// The gobo's color; the factor's largest channel (strength), and the other channels relative to it (tint).
 HWY_INLINE Vec3s gobo_color(const LightFilter& filter, const Vec3s& direction, int level) {
     const GoboPlaces places(filter, direction, level);
     return {places.value(0), places.value(1), places.value(2)};

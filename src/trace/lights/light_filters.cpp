@@ -14,7 +14,7 @@
 
 namespace tyndall {
 namespace {
-// The picture of a frame; from the frame before where it is the same file.
+// The gobo of a frame; shared with the previous frame if the file is the same.
 std::shared_ptr<const Gobo> gobo_of(const GoboSource& source, int frame, MissingFrame missing,
                                     const Snapshot* previous) {
     if (source.still) return source.still;

@@ -10,9 +10,9 @@ struct Light;
 struct LightSource;
 struct Snapshot;
 
-// Gives a light, whose place and cone are known, its filter if it has one; `up` is that of the light. A point light
-// whose profile sends nothing backwards becomes a spot: what ends at its cone is then never asked for beyond. Pictures
-// that `previous` (may be null) has are not read again. Throws Error.
+// Sets the filter of a light, if it has one; the light's position and cone must be set, `up` is its up vector. A point
+// light whose profile emits nothing backward becomes a spot, so that nothing beyond its cone is evaluated. Reuses
+// images that `previous` (may be null) has. Throws Error.
 void add_filter(const LightSource& source, Moment moment, vec3 up, MissingFrame missing, const Snapshot* previous,
                 Light& light);
 }

@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-// The instances of a link that are left when those without shadows are taken away; empty = all.
+// Removes the instances that cast no shadows from a link; empty = all.
 std::vector<bool> without_shadowless(const Scene& scene, std::vector<bool> casters, bool all_cast) {
     if (all_cast) return casters;
     if (casters.empty()) casters.assign(scene.instances.size(), true);
@@ -19,7 +19,7 @@ std::vector<bool> without_shadowless(const Scene& scene, std::vector<bool> caste
     return casters;
 }
 
-// The number of a set among those so far; -1 for all instances.
+// Index of a set among those so far, adding it if it is new; -1 for all instances.
 template<class Sets, class Same, class Add>
 int number_of(const std::vector<bool>& wanted, Sets& sets, const Same& same, const Add& add) {
     if (std::ranges::find(wanted, false) == wanted.end()) return -1;
@@ -29,7 +29,7 @@ int number_of(const std::vector<bool>& wanted, Sets& sets, const Same& same, con
     return number;
 }
 
-// The surfaces of the same set a frame before.
+// The surfaces of the same set in the previous frame.
 const Occluders* before(const std::vector<bool>& instances, const Snapshot* previous) {
     if (!previous) return nullptr;
     const auto known = std::ranges::find(previous->casters, instances, &CasterSet::instances);

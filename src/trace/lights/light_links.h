@@ -1,4 +1,4 @@
-// Which surfaces shadow a light, and which it shines on: flags of objects and links of lights at one moment.
+// Shadow and light linking at one moment: which surfaces shadow a light, and which it illuminates.
 #pragma once
 #include "base/math.h"
 
@@ -9,8 +9,8 @@ struct CasterSet;
 struct Scene;
 struct Snapshot;
 
-// Sets that differ from all instances, each once; of every light of the scene, which one shadows it (x) and which it
-// shines on (y), -1 = all. `of_lights` is empty when there are no sets.
+// Distinct sets of instances, except all of them. For every light of the scene, the index of the set that shadows it
+// (x) and of the one it illuminates (y), -1 = all; `of_lights` is empty if there are no sets.
 struct LightLinks {
     std::vector<CasterSet> casters;
     std::vector<std::vector<bool>> lit;
@@ -18,6 +18,6 @@ struct LightLinks {
     ivec2 of_environment{-1};
 };
 
-// Shares the surfaces that did not move with `previous`. Throws Error.
+// Shares surfaces that did not move with `previous` (may be null). Throws Error.
 LightLinks light_links(const Scene& scene, double seconds, const Snapshot* previous);
 }

@@ -1,10 +1,10 @@
-// How the rays of a light lie on a picture of them: in shadow maps and in light grids.
+// How shadow maps and light grids parameterize a light's rays.
 #pragma once
 
 namespace tyndall {
 enum class LightProjection {
-    parallel,    // of a sun, across its direction
-    perspective, // of a narrow cone, by its tangents
-    all_around   // from a point in every direction
+    parallel,    // suns: plane perpendicular to the direction
+    perspective, // narrow cones: tangent plane
+    all_around   // all directions from a point
 };
 }

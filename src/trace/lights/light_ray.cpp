@@ -13,7 +13,7 @@ LightPoint point_on(const Light& light, const Ray& ray, vec3 u) {
         result.at = glm::normalize(dvec3(ray_to_light(light, ray.origin, vec2(u)).direction));
         return result;
     }
-    // The sphere in four dimensions has this density when seen in three, and an even disc when seen in two.
+    // The uniform surface of a sphere in 4D projects to this density in 3D, and to a uniform disc in 2D.
     const float nearest = std::clamp(glm::dot(light.position - ray.origin, ray.direction), 0.0f, ray.t_max);
     const vec3 towards = light.position - ray.at(nearest);
     const float distance = glm::length(towards);

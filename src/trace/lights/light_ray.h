@@ -1,21 +1,21 @@
-// The point of a light that a whole camera ray sees.
+// Points on lights for camera rays.
 #pragma once
 #include "scene/light.h"
 
 namespace tyndall {
-// One point of a light for a whole camera ray.
+// One point of a light, used for a whole camera ray.
 struct LightPoint {
-    dvec3 at{0};      // its place; of a sun the direction towards it, unit
+    dvec3 at{0};      // its position; for a sun, the unit direction toward it
     bool far = false; // a sun
-    dvec3 center{0};  // of the light's ball
+    dvec3 center{0};  // of the light's sphere
     double radius = 0;
 };
 
-// The centre of the light.
+// The center of the light.
 LightPoint center_of(const Light& light);
 
-// A random point of a soft light. Of a sun the direction ray_to_light() takes. Of a ball a point with density
-// 1/√(radius² - r²), the one that from every side is seen as an evenly filled disc: uniform over solid angle but for
-// O(radius²/distance²); u.xy are well spread as seen from where the ray passes it.
+// A random point of a soft light. For a sun, the direction that ray_to_light() picks. For a sphere, a point with
+// density 1/√(radius² - r²), whose projection from every side is a uniform disc: uniform over solid angle up to
+// O(radius²/distance²). u.xy stay well distributed as seen from the point where the ray passes the light.
 LightPoint point_on(const Light& light, const Ray& ray, vec3 u);
 }

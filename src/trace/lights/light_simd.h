@@ -1,4 +1,4 @@
-// Lights as sixteen points of fog see them (see base/simd/simd.h for how such files are compiled).
+// Light that arrives at sixteen points (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_TRACE_LIGHT_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_TRACE_LIGHT_SIMD_H
 #undef TYNDALL_TRACE_LIGHT_SIMD_H
@@ -12,20 +12,20 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// Irradiance of a light with nothing in the way.
+// Unoccluded irradiance of a light.
 struct LightSamples {
     Vec3s to_light; // unit
     Floats distance;
-    Floats amount; // multiplies the light's intensity; of colours of a gobo the largest channel
+    Floats amount; // factor on the light's intensity; for a colored gobo, its largest channel
 };
 
-// What the other channels of a light's gobo are of the largest one.
+// The color of a light's gobo relative to its largest channel.
 HWY_INLINE Vec3s tint_at(const Light& light, const Vec3s& position) {
     const Vec3s offset = position - splat(light.position);
     return filter_tint(*light.filter, offset * (1.0f / max(sqrt(dot(offset, offset)), 1e-12f)));
 }
 
-// As arrival() of scene/light.h. `cone`: the light's cone_falloff().
+// Same as arrival() of scene/light.h. `cone`: the light's cone_falloff().
 HWY_INLINE LightSamples arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
     if (is_distant(light)) return {splat(-light.direction), infinity, 1.0f};
     const Vec3s offset = splat(light.position) - position;

@@ -1,4 +1,4 @@
-// What Embree asks on the way: does this ray go on through the hole of a mask or the sheet of a blended surface?
+// Embree filter callbacks: whether a ray passes the hole of an alpha mask or a blended surface.
 #include "trace/occlusion/scene.h"
 
 #include <cstring>
@@ -7,8 +7,8 @@ namespace tyndall {
 namespace {
 constexpr double dark = 1e-6; // less light than this counts as blocked
 
-// Neighbouring triangles of one sheet both report a ray that meets their common edge: such a hit comes twice, at the
-// same distance but for rounding.
+// Whether a hit was counted before: two triangles that share an edge both report a ray that hits it, at the same
+// distance up to rounding.
 bool passed_before(ShadowContext& context, int lane, uint32_t geometry, float t, float reach) {
     const int known = std::min(context.count[lane], ShadowContext::remembered);
     for (int i = 0; i < known; ++i) {

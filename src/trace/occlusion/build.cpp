@@ -21,7 +21,7 @@ bool traceable(const std::vector<vec3>& positions, size_t count, glm::uvec3 corn
     return glm::dot(area, area) > 0;
 }
 
-// Leaves out what cannot be traced and returns how many; the index list is copied only then.
+// Drops triangles that cannot be traced and returns how many; the index list is copied only then.
 uint64_t leave_out_bad_triangles(OccluderGeometry& geometry) {
     const std::vector<glm::uvec3>& triangles = geometry.mesh->triangles;
     const size_t corners = geometry.mesh->positions.size();
@@ -57,7 +57,7 @@ OccluderGeometry placed_geometry(const Scene& scene, int index, const Placement&
     return geometry;
 }
 
-// What casts shadows by its alpha needs a callback; everything else is traced at full speed.
+// Only geometry with alpha needs callbacks; all else is traced at full speed.
 void set_callbacks(RTCGeometry handle, const OccluderGeometry& geometry) {
     if (geometry.masks()) rtcSetGeometryIntersectFilterFunction(handle, pass_mask_holes);
     if (geometry.passes_light()) rtcSetGeometryOccludedFilterFunction(handle, pass_light);

@@ -50,7 +50,7 @@ void set_embree_isa(std::string_view isa) {
     s.isa = isa;
 }
 
-// Threads and their placement stay the process's own: `threads` would limit the whole process.
+// Leaves thread count and affinity alone: Embree's `threads` would limit the whole process.
 RTCDevice embree_device() {
     DeviceState& s = state();
     const std::lock_guard lock(s.mutex);

@@ -1,4 +1,4 @@
-// Embree 3 and 4 under one set of names. A query's flags are part of its context in 3, and stand beside it in 4.
+// Embree 3 and 4 behind one interface. A query's flags are part of its context in 3, and separate from it in 4.
 #pragma once
 #if TYNDALL_EMBREE >= 4
 #include <embree4/rtcore.h>

@@ -1,4 +1,4 @@
-// Which triangles stand where at a moment, and what a hit looks like.
+// The triangles of a moment, and the surface at a hit.
 #include "trace/occlusion/scene.h"
 
 #include "base/io/file.h"
@@ -93,7 +93,7 @@ SurfacePoint Occluders::surface(const Ray& ray, const Hits& hits, int lane) cons
     const float u = hits.u[lane], v = hits.v[lane];
     const vec3 a = geometry.positions[corners.x], b = geometry.positions[corners.y], c = geometry.positions[corners.z];
 
-    // Both normals turn to the viewer: every surface is two-sided.
+    // Both normals are flipped toward the viewer: every surface is two-sided.
     SurfacePoint point;
     point.instance = geometry.instance;
     point.position = (1 - u - v) * a + u * b + v * c;

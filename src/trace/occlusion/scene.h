@@ -1,4 +1,4 @@
-// Inside the occluders: Embree's device, and one set of triangles with its acceleration structure.
+// Internals of Occluders: Embree's device, and one set of triangles with its acceleration structure.
 #pragma once
 #include "scene/mesh.h"
 #include "scene/pose.h"
@@ -14,33 +14,33 @@ inline constexpr float largest_coordinate = 1e18f;
 // The one device of the process, made on first use. Throws Error.
 RTCDevice embree_device();
 
-// Whether the device takes packets of 16 rays as they are; else packets of 8 are its widest.
+// Whether the device natively takes packets of 16 rays; else 8 is its widest.
 bool traces_sixteen();
 
-// Throws what Embree reported since the last call on this device, if anything.
+// Throws the first error that Embree reported since the last call, if any.
 void check_embree();
 
 // One instance's triangles in world space.
 struct OccluderGeometry {
     const Mesh* mesh = nullptr;
     const Material* material = nullptr;    // null = white Lambert
-    const Texture* base_texture = nullptr; // usable ones only
+    const Texture* base_texture = nullptr; // null if missing or without texels
     const Texture* emission_texture = nullptr;
     int instance = 0;
     mat3 normal_to_world{1};
     std::vector<vec3> positions;     // one more than the mesh has: Embree loads 16 bytes at a time
-    std::vector<vec3> posed_normals; // of a mesh in a pose; else its own are used
-    std::vector<glm::uvec3> kept;    // triangles when some were left out; else the mesh's own are used
-    std::vector<uint32_t> originals; // their indices in the mesh; empty when all were kept
+    std::vector<vec3> posed_normals; // if the mesh is posed; else its own are used
+    std::vector<glm::uvec3> kept;    // the valid triangles if some were left out; else the mesh's own are used
+    std::vector<uint32_t> originals; // their indices in the mesh; empty if all are used
     uint64_t left_out = 0;
 
     uint32_t triangle_in_mesh(uint32_t primitive) const { return originals.empty() ? primitive : originals[primitive]; }
     bool masks() const { return material && material->alpha_mode == AlphaMode::mask; }
     bool blends() const { return material && material->alpha_mode == AlphaMode::blend; }
-    // Whether light may get through: masks, and sheets that are not opaque all over.
+    // Whether light may pass through: masks, and blended surfaces that are not fully opaque.
     bool passes_light() const { return masks() || (blends() && (base_texture || material->alpha < 1)); }
     const std::vector<vec3>& normals() const { return posed_normals.empty() ? mesh->normals : posed_normals; }
-    // What Embree has: all triangles of the mesh, or those that were kept.
+    // The triangles that Embree has: all of the mesh, or the valid ones.
     const std::vector<glm::uvec3>& traced() const { return left_out ? kept : mesh->triangles; }
     // Opacity at a point of a triangle of the mesh: 1 for opaque materials, 0 or 1 for masks.
     float opacity(uint32_t triangle, float u, float v) const;
@@ -51,7 +51,7 @@ template<class T> T interpolated(const std::vector<T>& values, glm::uvec3 corner
     return (1 - u - v) * values[corners.x] + u * values[corners.y] + v * values[corners.z];
 }
 
-// Where an instance stands, and in which shape.
+// An instance's transform and pose.
 struct Placement {
     mat4 matrix{1};
     Pose pose;
@@ -61,14 +61,14 @@ struct Placement {
 
 struct OccluderSet {
     RTCScene scene = nullptr;                 // null = no triangles
-    std::vector<OccluderGeometry> geometries; // Embree's geometry ids
-    std::vector<int> instances;               // what it was made of ...
-    std::vector<Placement> placements;        // ... and where each stood
+    std::vector<OccluderGeometry> geometries; // indexed by Embree's geometry IDs
+    std::vector<int> instances;               // what it was built from ...
+    std::vector<Placement> placements;        // ... and their placements
     Box bounds;
     uint64_t triangles = 0, dropped = 0;
     bool has_alpha = false;
 
-    // Those that light may get through, made when first asked for. Null = none.
+    // The part that light may pass through, built on first use. Null = none.
     mutable std::once_flag sifted;
     mutable std::shared_ptr<const OccluderSet> passing;
 
@@ -78,26 +78,26 @@ struct OccluderSet {
     ~OccluderSet();
 };
 
-// What never moves, and what does: two sets, so that the first is built once.
+// Static and moving triangles in separate sets, so that the static one is built once.
 struct Occluders::Impl {
     const Scene* scene = nullptr;
     std::shared_ptr<const OccluderSet> still, moving;
     std::vector<const OccluderGeometry*> by_instance; // null = no triangles
 
-    // Made when first asked for.
+    // Built on first use.
     std::once_flag sliced, meshed;
     std::shared_ptr<const ShadowSlices> slices;
     std::shared_ptr<const ShadowMesh> mesh;
 };
 
-// Triangles of some instances at their places, ready to trace. Throws Error.
+// Triangles of some instances with their placements, ready to trace. Throws Error.
 std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::vector<int> instances,
                                                      std::vector<Placement> placements);
 
-// Those of a set's instances that light may get through; null = none. Throws Error.
+// The part of a set that light may pass through; null = none. Throws Error.
 const OccluderSet* passing_part(const Scene& scene, const OccluderSet& set);
 
-// What shadow rays gather on their way: Embree's context with the light each lane has left.
+// State of shadow rays: Embree's context and the transmission of each lane.
 struct ShadowContext {
     static constexpr int remembered = 4;
     QueryContext embree;
@@ -105,10 +105,10 @@ struct ShadowContext {
     struct Passed {
         uint32_t geometry;
         float t;
-    } passed[16][remembered]; // the last sheets each lane went through
+    } passed[16][remembered]; // the last surfaces each lane passed through
     int count[16];
 
-    void forget(); // all light left, no sheet passed; needed before Embree meets geometries with alpha
+    void forget(); // full transmission, no surface passed; needed before tracing geometry with alpha
 };
 
 // Embree's callbacks for geometries with alpha.

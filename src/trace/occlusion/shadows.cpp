@@ -1,4 +1,4 @@
-// What exact shadows are found with: depends on the triangles alone, and is shared by all that share them.
+// Structures for exact shadows: they depend only on the triangles, and are shared along with them.
 #include "trace/occlusion/scene.h"
 #include "trace/shadows/intervals/shadow_slices.h"
 #include "trace/shadows/volumes/shadow_mesh.h"

@@ -1,4 +1,4 @@
-// Rays against the triangles: packets as wide as the machine takes them, checked before Embree sees them.
+// Traces rays in packets as wide as the device supports, checked before Embree sees them.
 #include "trace/occlusion/scene.h"
 
 #include <cstring>
@@ -8,7 +8,7 @@ namespace {
 bool in_range(float value) { return std::abs(value) <= largest_coordinate; } // false for NaN
 bool in_range(vec3 v) { return in_range(v.x) && in_range(v.y) && in_range(v.z); }
 
-// Lane `i` of a packet, made from a ray; false when the ray is unfit.
+// Writes a ray to lane `i` of a packet; false if the ray is invalid.
 template<class Packet> bool put_ray(const Ray& ray, float t_min, Packet& packet, int i, uint32_t id) {
     if (!in_range(ray.origin) || !in_range(ray.direction) || !(ray.t_max >= t_min) || !(t_min >= 0)) return false;
     packet.org_x[i] = ray.origin.x, packet.org_y[i] = ray.origin.y, packet.org_z[i] = ray.origin.z;
@@ -18,7 +18,7 @@ template<class Packet> bool put_ray(const Ray& ray, float t_min, Packet& packet,
     return true;
 }
 
-// Lanes [base, base + width) against one set; what is nearer than before goes into `hits`.
+// Traces lanes [base, base + width) against one set; stores hits that are closer than those in `hits`.
 template<class Packet, int width>
 void trace_closest(const OccluderSet& set, std::span<const Ray> rays, float t_min, int base, bool coherent,
                    Hits& hits) {
@@ -45,8 +45,8 @@ void trace_closest(const OccluderSet& set, std::span<const Ray> rays, float t_mi
     }
 }
 
-// Which lanes Embree may see (-1): asked for, fit and with any length. Unfit ones become blocked, ones without length
-// free. Free of branches, so that the compiler makes vectors of it.
+// Which lanes to trace (-1): active, valid and of non-zero length. Invalid ones become blocked, empty ones free.
+// Branch-free, so that the compiler vectorizes it.
 template<int width> void choose_lanes(const Occluders::ShadowRays& rays, int base, int* valid, float* visibility) {
     const auto large = [](float value) { return !(std::abs(value) <= largest_coordinate); }; // or NaN
     for (int i = 0; i < width; ++i) {
@@ -106,7 +106,7 @@ void Occluders::closest(std::span<const Ray> rays, float t_min, Hits& hits, bool
 }
 
 namespace {
-// Through two sets, of which either may be null.
+// Traces through two sets, either of which may be null.
 void trace_packets(const OccluderSet* const* sets, const Occluders::ShadowRays& rays, float* visibility) {
     if (traces_sixteen()) {
         trace_transmission<RTCRay16, 16>(sets, rays, 0, visibility);

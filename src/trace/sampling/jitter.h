@@ -1,5 +1,5 @@
-// Patterns by which neighbouring pixels shift their steps against each other, so that too few steps show as fine grain
-// instead of bands.
+// Dither patterns that offset the steps of neighboring pixels, so that too few steps show as fine grain instead of
+// banding.
 #pragma once
 #include "base/math.h"
 
@@ -14,7 +14,7 @@ namespace tyndall {
 // spatiotemporal  16 such tiles that are also blue from frame to frame (Wolfe et al. 2022)
 enum class Jitter { none, ordered, white, blue, interleaved, spatiotemporal };
 
-// A pixel's shift in [0,1), in units of 2^-32. From frame to frame the first and the others move by the golden ratio,
-// white noise is new, and the spatio-temporal tile takes its next slice.
+// A pixel's offset in [0,1), in units of 2^-32. From frame to frame, ordered, blue and interleaved shift by the golden
+// ratio, white is randomized again, and spatiotemporal takes its next slice.
 uint32_t jitter_bits(Jitter jitter, ivec2 pixel, int frame, uint32_t seed);
 }

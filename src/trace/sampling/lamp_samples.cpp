@@ -9,14 +9,14 @@
 
 namespace tyndall {
 namespace {
-constexpr uint32_t candidates = 32; // the even ones of the filter, the odd ones of lamps in the pixel
+constexpr uint32_t candidates = 32; // even ones sample the filter, odd ones lamps in the pixel
 constexpr uint32_t use_lamp = 0x1a3bu, use_choice = 0x1a3cu;
-constexpr float min_distance = 1e-4f; // pixels, below which the glow grows no further
-constexpr float beside_share = 0.02f; // of the glow, outside of a spot's beam
-constexpr float away_glow = 0.125f;   // everywhere: that of a lamp 8 pixels away
+constexpr float min_distance = 1e-4f; // pixels, below which the glow is clamped
+constexpr float beside_share = 0.02f; // fraction of the glow outside a spot's beam
+constexpr float away_glow = 0.125f;   // everywhere: the glow of a lamp 8 pixels away
 
-// The beam of a spot as the picture shows it: planes through the line of sight touch the cone at an angle ψ from the
-// axis in the picture, sin ψ = sin θ / sin β, with β between the axis and the line of sight.
+// The beam of a spot in the image: planes through the line of sight touch its cone of half angle θ at an angle ψ from
+// the axis in the image, sin ψ = sin θ / sin β, with β between the axis and the line of sight.
 void set_beam(const View& view, const Light& light, View::Lamp& lamp) {
     const bool flat = view.camera.ortho_height > 0;
     const vec3 sight = flat ? view.camera.forward : glm::normalize(light.position - view.camera.position);
@@ -33,7 +33,7 @@ bool in_beam(const View::Lamp& lamp, vec2 off, float distance) {
     return lamp.half_angle >= pi || glm::dot(off, lamp.axis) >= distance * std::cos(lamp.half_angle);
 }
 
-// Of all lamps, as if they were as bright as each other.
+// Of all lamps, taken as equally bright.
 float glow(const View& view, vec2 position) {
     float sum = away_glow;
     for (const View::Lamp& lamp : view.lamps) {
@@ -44,8 +44,7 @@ float glow(const View& view, vec2 position) {
     return sum;
 }
 
-// A lamp seen in the square of a pixel's filter: points of its beam up to `reach` pixels away, evenly in distance and
-// angle.
+// A lamp inside a pixel's filter: samples points of its beam up to `reach` pixels away, uniform in distance and angle.
 struct Beam {
     const View::Lamp* lamp;
     float reach;
@@ -88,7 +87,7 @@ std::vector<View::Lamp> lamps_in(const View& view, const Snapshot& snapshot) {
         if (!at) continue;
         const vec3 rim = light.position + light.radius * view.camera.right;
         View::Lamp lamp{*at, glm::distance(*at, pixel_of(view.camera, view.size, rim).value_or(*at))};
-        if (view.camera.lens) { // it is as wide as its blur
+        if (view.camera.lens) { // adds its defocus blur
             const float depth = glm::dot(light.position - view.camera.position, view.camera.forward);
             lamp.radius += 0.5f * blur_diameter(view.camera, view.size, depth);
         }
@@ -120,7 +119,7 @@ SamplePoint lamp_sample(const View& view, vec2 center, SamplePlace place) {
         points[k] = of_lamp ? seen.beams[k / 2 % seen.count].point({u.x, u.y})
                             : center + radius * filter_point(view.filter, {u.x, u.y});
 
-        // How much likelier it should be than it is (balance heuristic over the ways to come by it).
+        // Target density over sampling density, the latter summed over both techniques (balance heuristic).
         const float wanted = filter_density(view.filter, (points[k] - center) / radius) / (radius * radius);
         float density = filter_share * wanted;
         for (uint32_t b = 0; b < seen.count; ++b)

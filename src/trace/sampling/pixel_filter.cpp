@@ -1,4 +1,4 @@
-// Inverse cumulative distributions of filters, by summing fine midpoints.
+// Inverse cumulative distributions of filters, by the midpoint rule.
 #include "trace/sampling/pixel_filter.h"
 
 #include <algorithm>
@@ -7,13 +7,13 @@
 namespace tyndall {
 namespace {
 constexpr int cells = 4096;
-// Of a filter over [-1,1].
+// The quantile function of a filter over [-1,1].
 struct Quantiles {
     std::array<float, cells + 1> at; // position below which i/cells of it lies
     double area = 0;
 };
 
-// Gaussian of standard deviation radius/3, lowered to be 0 at the radius.
+// Gaussian of standard deviation radius/3, shifted down to 0 at the radius.
 double gaussian(double x) { return std::exp(-4.5 * x * x) - std::exp(-4.5); }
 
 // Blackman–Harris window, 4 terms (Harris 1978), over [-1,1]. Multiples of the angle by Chebyshev polynomials.
@@ -22,7 +22,7 @@ double blackman_harris(double x) {
     return 0.35875 - 0.48829 * one + 0.14128 * two - 0.01168 * three;
 }
 
-// Inverse of the filter's cumulative distribution, by summing fine midpoints.
+// Inverse of the filter's cumulative distribution, by the midpoint rule.
 template<class Filter> Quantiles quantiles(Filter filter) {
     constexpr int steps = 1 << 16;
     const auto at = [](int step) { return -1 + 2 * (step + 0.5) / steps; };

@@ -1,4 +1,4 @@
-// Pixel reconstruction filters as densities: products of one and the same density in x and y.
+// Pixel reconstruction filters as separable densities, the same in x and y.
 #pragma once
 #include "base/math.h"
 
@@ -8,6 +8,6 @@ enum class PixelFilter { box, tent, gaussian, blackman_harris, center };
 // A point of the square [-1,1]², distributed as the filter, from numbers in [0,1). Zero for `center`.
 vec2 filter_point(PixelFilter filter, vec2 u);
 
-// Density of filter_point() there; 0 outside the square. Not for `center`.
+// Density of filter_point() at a point; 0 outside the square. Not for `center`.
 float filter_density(PixelFilter filter, vec2 point);
 }

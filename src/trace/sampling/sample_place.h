@@ -4,7 +4,7 @@
 
 namespace tyndall {
 struct SamplePlace {
-    uint32_t sequence; // names the sequence
+    uint32_t sequence; // identifies the sequence
     uint32_t index;    // place in it
 };
 }

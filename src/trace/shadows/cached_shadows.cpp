@@ -21,7 +21,7 @@ std::shared_ptr<const ShadowMesh> cached_shadow_mesh(const Snapshot& snapshot, c
 
 std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snapshot& snapshot, const Light& light,
                                                    const ShadowMapOptions& options) {
-    Box fog; // all that maps ask of the media
+    Box fog; // all of the media that shadow maps depend on
     for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
     CacheKey key = shadow_key(snapshot, light);
     key.add(view).add(fog).add(snapshot.bounds).add(snapshot.anchor).add(snapshot.extent);

@@ -1,4 +1,4 @@
-// Light-side optical depth: which media are solved, which go into a grid, which are marched.
+// Optical depth toward a light: which media have closed forms, which go into a grid, which are marched.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "trace/transmittance/light_depth.cpp"
 #include <hwy/foreach_target.h>
@@ -29,8 +29,8 @@ namespace tyndall {
 HWY_EXPORT(light_depths_kernel);
 
 namespace {
-// Mean depth over the fog's bounds, by Roberts' R3 sequence (steps of 1/φ, 1/φ², 1/φ³ with φ⁴ = φ + 1). Fog without
-// bounds is taken where the scene is.
+// Mean depth over the fog's bounds, by Roberts' R3 sequence (steps of 1/φ, 1/φ², 1/φ³ with φ⁴ = φ + 1). Unbounded fog
+// is limited to the scene's bounds.
 float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
     constexpr uint32_t packets = 256;
     Box fog;
@@ -58,7 +58,7 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
     return static_cast<float>(sum / (packets * 16));
 }
 
-// What the depths of the brick media along the way to a light depend on, apart from where they are asked for.
+// Key of what the brick media's optical depth toward a light depends on, apart from where it is evaluated.
 CacheKey depth_key(std::span<const Medium* const> bricks, const Light& light, int resolution) {
     CacheKey key;
     key.add(light).add(resolution);

@@ -19,7 +19,7 @@ struct LightPaths {
     Floats length;
 };
 
-inline constexpr float sun_distance = 1e12f; // metres: beyond all fog, and its square is still a float
+inline constexpr float sun_distance = 1e12f; // meters: beyond all fog, and its square is still finite
 
 HWY_INLINE LightPaths light_paths(const Light& light, const Vec3s& point) {
     if (is_distant(light)) return {point, splat(-light.direction), sun_distance};
@@ -54,9 +54,9 @@ HWY_INLINE Interval<Floats> inside_box(const Medium& medium, const LightPaths& p
     return range;
 }
 
-// Mean of exp(-(y-base)/falloff), held at 1 below the base, between two heights. Above the base that is the density at
-// the lower end times (1-e^-x)/x with x the height difference over the falloff. Both shares are worked out by
-// themselves: on a path to the sun a share of 1e-9 is still kilometres.
+// Mean of exp(-(y-base)/falloff), clamped to 1 below the base, between two heights. Above the base it is the density at
+// the lower end times (1-e^-x)/x, with x the height difference over the falloff. The fractions above and below are
+// computed separately: on a path to the sun, a fraction of 1e-9 is still kilometers.
 HWY_INLINE Floats mean_height_density(const Medium& medium, const Floats& y0, const Floats& y1) {
     const Floats base = medium.density.height_base, low = min(y0, y1), high = max(y0, y1);
     const Mask16 level = high <= low;
@@ -79,7 +79,7 @@ HWY_INLINE Floats analytic_depth16(const Medium& medium, const LightPaths& paths
     return zero_unless(length > 0.0f, length * mean_height_density(medium, y0, y1));
 }
 
-// Grid coordinates of a point; `valid` loses the points that the grid's mapping does not reach.
+// Grid coordinates of a point; clears `valid` for points outside the grid's projection.
 HWY_INLINE Vec3s grid_coordinates(const LightDepthGrid& grid, const Vec3s& point, Mask16& valid) {
     const mat3& m = grid.world_to_grid;
     const Vec3s p = point - splat(grid.position);
@@ -101,7 +101,7 @@ HWY_INLINE Vec3s grid_coordinates(const LightDepthGrid& grid, const Vec3s& point
     return {select(lower, folded_x, x), select(lower, folded_y, y), distance};
 }
 
-// Splits a coordinate into a cell and the place in it; what lies outside is held at the border.
+// Splits a coordinate into a cell and the fraction within it; clamps to the border.
 HWY_INLINE Ints cell_of(const Floats& coordinate, int size, Floats& share) {
     const Floats last = static_cast<float>(size - 1);
     const Floats held = min(zero_unless(coordinate > 0.0f, coordinate), last);
@@ -124,7 +124,7 @@ HWY_INLINE Floats trilinear16(const std::vector<float>& values, ivec3 size, cons
     return mixed(across(values.data()), across(values.data() + layer), share_w);
 }
 
-// Depth of the brick media from the grid: 0 before the fog and beside it, all of it behind.
+// Depth of the brick media from the grid: 0 in front of the fog and beside it, all of it behind.
 HWY_INLINE Floats grid_depth16(const LightDepthGrid& grid, const Vec3s& point) {
     Mask16 valid = Floats(0.0f) < Floats(1.0f);
     const Vec3s coordinates = grid_coordinates(grid, point, valid);
@@ -139,7 +139,7 @@ HWY_INLINE Floats grid_depth16(const LightDepthGrid& grid, const Vec3s& point) {
     return zero_unless(valid, trilinear16(*grid.depth, grid.size, {u, v, w}));
 }
 
-// Corner numbers of points among the froxels; `inside` loses those beyond them.
+// Corner coordinates of points among the froxels; clears `inside` for points beyond them.
 HWY_INLINE Vec3s froxel_coordinates(const LightDepthFroxels& froxels, const Vec3s& point, Mask16& inside) {
     const Camera& camera = froxels.camera;
     const Vec3s offset = point - splat(camera.position);
@@ -159,7 +159,7 @@ HWY_INLINE Vec3s froxel_coordinates(const LightDepthFroxels& froxels, const Vec3
     return {u, v, w};
 }
 
-// Brick media integrated point by point; too long to be worth inlining.
+// Brick media integrated point by point, by a function too long to be worth inlining.
 HWY_INLINE Floats marched_depth16(const LightDepth& depth, const Vec3s& point, const Mask16& active) {
     alignas(64) float x[16], y[16], z[16], is_active[16], result[16];
     alignas(64) int32_t wanted[16];

@@ -14,7 +14,7 @@ namespace tyndall::HWY_NAMESPACE {
 namespace {
 constexpr float voxels_per_sample = 1.5f;
 
-// Optical depth of one medium along the paths, by midpoints of their parts inside its bricks' box.
+// Optical depth of one medium along the paths, by the midpoint rule inside its bricks' box.
 Floats depth_along(const Medium& medium, const LightPaths& paths) {
     if (medium.density.bricks->empty()) return 0.0f;
     const Box& box = medium.density.bricks->bounds;
@@ -67,7 +67,7 @@ namespace tyndall {
 HWY_EXPORT(fill_corners);
 
 namespace {
-constexpr float max_growth = 8; // of the slices' thickness from first to last
+constexpr float max_growth = 8; // thickness of the last slice over that of the first
 
 // Planar depths between which the view's rays cross the bounds.
 Interval<float> seen_depths(const View& view, const Box& bounds) {
@@ -95,7 +95,7 @@ LightDepthFroxels fitted_froxels(const View& view, const Box& bounds, int resolu
     const float growth = ortho ? 1 : std::clamp(seen.high / std::max(seen.low, 1e-6f * seen.high), 1.0f, max_growth);
     froxels.first = 2 / (1 + growth);
 
-    // Square cells, as many as fit the longer side, and one more beyond each edge.
+    // Square cells, `resolution` along the longer side, and one more beyond each edge.
     const vec2 picture(view.size);
     const float pixels = std::max(picture.x, picture.y) / static_cast<float>(resolution);
     const ivec2 cells = glm::max(ivec2(glm::ceil(picture / pixels - 1e-3f)), ivec2(1));

@@ -1,4 +1,4 @@
-// Where a light's grid lies: tightly around the bricks that the light can reach.
+// Fits a light's grid tightly around the bricks that the light can reach.
 #include "trace/transmittance/light_grid.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
@@ -12,7 +12,7 @@ constexpr float max_across = 65536;          // corners along one axis
 constexpr float widest_cone = 70 * pi / 180; // half angle up to which perspective columns serve a spot
 constexpr float widest_view = 60 * pi / 180; // ... and a point light that has the fog to one side
 
-// A brick in world space: a box with any edges.
+// A brick in world space: a parallelepiped.
 struct Block {
     vec3 center, half[3];
     float radius;
@@ -34,7 +34,7 @@ Block block_of(const BrickPool& pool, vec3 low, vec3 high) {
     return block;
 }
 
-// Of each brick, or of `runs` of them along z: what lies along a line they take up alike.
+// One per brick or, with `runs`, per run of bricks along z, which has the same extent as its bricks.
 std::vector<Block> blocks_of(std::span<const Medium* const> media, bool runs) {
     std::vector<Block> blocks;
     for (const Medium* medium : media) {
@@ -53,7 +53,7 @@ std::vector<Block> blocks_of(std::span<const Medium* const> media, bool runs) {
     return blocks;
 }
 
-// Ranges of the three coordinates that the fog takes up.
+// Ranges of the three grid coordinates that the fog occupies.
 struct Fit {
     vec3 low{infinity}, high{-infinity};
 
@@ -84,7 +84,7 @@ Fit fit_columns(std::span<const Block> blocks, const mat3& world_to_grid, vec3 o
     return fit;
 }
 
-// Distances and tangents the blocks take up, seen from the light. A block beside or behind the light fills the cone.
+// Distances and tangents that the blocks cover, seen from the light. A block beside or behind the light fills the cone.
 Fit fit_cone(std::span<const Block> blocks, const mat3& world_to_grid, vec3 origin, float largest_tangent) {
     const mat3 axes = glm::transpose(world_to_grid);
     const float angle = std::atan(largest_tangent);
@@ -107,7 +107,7 @@ Fit fit_cone(std::span<const Block> blocks, const mat3& world_to_grid, vec3 orig
     return fit;
 }
 
-// The turn about the axis that leaves the least room unused: along one of the media's own axes.
+// Chooses the rotation about the axis that wastes the least area: along one of the media's own axes.
 template<class FitOf>
 Fit tightest(std::span<const Medium* const> media, vec3 axis, LightDepthGrid& grid, const FitOf& fit_of) {
     Fit best;
@@ -122,7 +122,7 @@ Fit tightest(std::span<const Medium* const> media, vec3 axis, LightDepthGrid& gr
     return best;
 }
 
-// The half angle around `axis` that a light sees all blocks in; π when it is inside one.
+// Half angle of the cone around `axis` in which a light sees all blocks; π if it is inside one.
 float view_angle(std::span<const Block> blocks, vec3 origin, vec3 axis) {
     float angle = 0;
     for (const Block& block : blocks) {
@@ -135,12 +135,12 @@ float view_angle(std::span<const Block> blocks, vec3 origin, vec3 axis) {
     return angle;
 }
 
-// Cell sizes come in steps of a quarter octave of `unit` and corners at whole multiples, so that the grid stands still
-// while the fog in it drifts and its bounds change a little from frame to frame.
+// Cell sizes come in steps of a quarter octave of `unit`, and corners lie at whole multiples, so that the grid stays
+// put while the fog in it drifts and its bounds change slightly from frame to frame.
 float stable_size(float cell, float unit) { return unit * std::exp2(0.25f * std::round(4 * std::log2(cell / unit))); }
 
-// The finest cells worth their memory, metres: depths hardly bend within a voxel, which counts where many cells are
-// asked for.
+// The finest cells worth their memory, meters: depth is nearly linear within a voxel, so high resolutions gain nothing
+// from finer ones.
 struct FinestCell {
     float across = infinity, along = infinity;
 };
@@ -154,7 +154,7 @@ FinestCell finest_cell(std::span<const Medium* const> media, float cells) {
     return {across, 2 * across};
 }
 
-// Where the volume's own coordinates begin: a place that does not move when bricks come and go.
+// Origin of the volume's own coordinates, which does not move when bricks come and go.
 vec3 first_voxel(const BrickPool& pool) { return vec3(pool.index_to_world * vec4(-vec3(pool.low), 1)); }
 
 vec3 stable_anchor(vec3 point, vec3 base, float extent, float unit) {
@@ -196,8 +196,8 @@ void fit_sun(std::span<const Medium* const> media, std::span<const Block> blocks
     set_size(fit, vec3(across, across, std::max(across, stable_size(finest.along, voxel))), grid);
 }
 
-// Where the columns of a local light begin, and the distance at which their cells are cubes: two thirds of the way
-// through the fog. 0 = there is none.
+// Sets where the columns of a local light start. Returns the distance at which their cells are cubes, two thirds of the
+// way through the fog; 0 if there is none.
 float fit_distances(const Light& light, Fit& fit, LightDepthGrid& grid) {
     grid.position = light.position;
     grid.start = fit.low.z = std::max({fit.low.z, light.radius, 0.0f});
@@ -219,8 +219,8 @@ void fit_cone_grid(std::span<const Medium* const> media, std::span<const Block> 
     set_size(fit, vec3(width, width, stable_size(std::max(width * distance, finest.along), voxel)), grid);
 }
 
-// All directions: the octahedron's square of side 2 holds a solid angle of 4π; two thirds of it lie across the fog. An
-// even number of cells, as the square folds about its middle.
+// All directions: the octahedral square of side 2 covers a solid angle of 4π, and half its side takes two thirds of
+// `cells`. An even number of cells, as the square folds about its middle.
 void fit_octahedron(std::span<const Medium* const> media, std::span<const Block> blocks, const Light& light,
                     float cells, float voxel, LightDepthGrid& grid) {
     grid.projection = LightProjection::all_around;
@@ -233,7 +233,7 @@ void fit_octahedron(std::span<const Medium* const> media, std::span<const Block>
     const float distance = fit_distances(light, fit, grid);
     if (!(distance > 0)) return;
     const FinestCell finest = finest_cell(media, cells);
-    const float length = distance * std::sqrt(pi); // metres on a side of 1
+    const float length = distance * std::sqrt(pi); // meters per unit of the square
     const float width = 1 / std::ceil(std::min(cells * (2 / 3.0f), length / finest.across));
     set_size(fit, vec3(width, width, stable_size(std::max(width * length, finest.along), voxel)), grid);
 }
@@ -252,7 +252,7 @@ LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& li
         return grid;
     }
 
-    // Perspective columns when one cone holds all that matters, else all directions.
+    // Perspective columns if one cone contains all relevant fog, else all directions.
     const bool spot = has_cone(light) && light.outer_cone <= widest_cone;
     const vec3 axis = spot ? light.direction : stable_direction(fog.center() - light.position);
     const float angle = spot ? light.outer_cone : view_angle(blocks, light.position, axis);

@@ -1,4 +1,4 @@
-// Grids of optical depth, from fitting to filling.
+// Fits and fills grids of optical depth.
 #pragma once
 #include "trace/transmittance/light_depth.h"
 
@@ -7,19 +7,18 @@
 #include <span>
 
 namespace tyndall {
-// A grid fitted to the brick media, without its depths; size 0 when the light reaches none of them. `resolution`: cells
-// across the longer side of the fog as the light sees it; along the light they are about as long as wide. Across,
-// they are no smaller than half a voxel at resolutions up to 64 and an eighth from 256 on; along it, than twice that.
+// A grid fitted to the brick media, without its depths; size 0 if the light reaches none of them. `resolution`: cells
+// across the longer side of the fog as seen from the light; along the light they are about as long as wide. Across,
+// they are no smaller than half a voxel at resolutions up to 64 and an eighth from 256 on; along, twice that.
 LightDepthGrid fitted_grid(std::span<const Medium* const> media, const Light& light, int resolution);
 
 // Integrates the media along the columns of a fitted grid, in parallel over columns.
 void fill_grid(std::span<const Medium* const> media, LightDepthGrid& grid);
 
-// The same when columns are first asked for (light_grid_simd.h), from any thread. Columns nobody asked for hold
-// nothing.
+// Integrates columns on first use (light_grid_simd.h). Thread-safe. Columns that were never requested hold nothing.
 class GridColumns {
 public:
-    GridColumns(std::vector<const Medium*> media, LightDepthGrid& grid); // gives the grid its depths
+    GridColumns(std::vector<const Medium*> media, LightDepthGrid& grid); // allocates the grid's depths
     void fill(int packet) const;                                         // sixteen columns of a row, once
 
     const LightDepthGrid& grid() const { return grid_; }

@@ -18,7 +18,7 @@ struct Columns {
     Vec3s origin, direction;
 };
 
-// Direction of an octahedral coordinate, not normalised; grid axes.
+// Direction of an octahedral coordinate in grid axes, not normalized.
 vec3 octahedral_direction(float x, float y) {
     const float z = 1 - std::abs(x) - std::abs(y);
     if (z >= 0) return {x, y, z};
@@ -43,7 +43,7 @@ Columns columns_at(const LightDepthGrid& grid, int first, int row) {
     return {{load(v[0]), load(v[1]), load(v[2])}, {load(v[3]), load(v[4]), load(v[5])}};
 }
 
-// Optical depth of one medium between two distances along the columns, by midpoints.
+// Optical depth of one medium between two distances along the columns, by the midpoint rule.
 Floats depth_between(const Medium& medium, const Columns& columns, float from, float to) {
     if (!(to > from)) return 0.0f;
     const vec3 voxel = medium.density.bricks->voxel_size;

@@ -1,4 +1,4 @@
-// Columns of a light's grid, integrated as sixteen points first ask for them (see base/simd/simd.h for how such files
+// Columns of a light's grid, integrated when sixteen points first need them (see base/simd/simd.h for how such files
 // are compiled).
 #if defined(TYNDALL_TRACE_TRANSMITTANCE_LIGHT_GRID_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_TRACE_TRANSMITTANCE_LIGHT_GRID_SIMD_H
@@ -28,7 +28,7 @@ HWY_INLINE Range range_of(const Floats& value, const Mask16& active, int size) {
     return {low_cell, static_cast<int>(std::clamp(to + 1, 0.0f, last))};
 }
 
-// Makes sure that the depths around the active points are there.
+// Fills the columns around the active points.
 HWY_INLINE void fill_around(const GridColumns& columns, const Vec3s& point, const Mask16& active) {
     const LightDepthGrid& grid = columns.grid();
     Mask16 valid = active;

@@ -1,5 +1,5 @@
-// How the light's way through the fog to a point is found: left out, one average, or its optical depth from froxels, a
-// grid along the light, or a march.
+// How transmittance from a light to a point is found: ignored, one average, or from optical depth in froxels, in a grid
+// along the light, or by marching.
 #pragma once
 
 namespace tyndall {

@@ -1,4 +1,4 @@
-// Edits as words of a script: "lights/lamp/intensity" and "400".
+// Parses edits from the words of a script: "lights/lamp/intensity" and "400".
 #include "base/error.h"
 #include "base/json/json_pointer.h"
 #include "base/text.h"

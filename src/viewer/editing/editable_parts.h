@@ -1,4 +1,4 @@
-// What edits can change of a scene, apart from the rest of it, which may be large.
+// The parts of a scene that edits can change, without the rest, which may be large.
 #pragma once
 #include "scene/scene.h"
 

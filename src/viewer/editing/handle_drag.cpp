@@ -7,8 +7,8 @@
 
 namespace tyndall {
 namespace {
-constexpr float sun_height = 0.14f; // below the upper edge, as a share of the picture's height
-constexpr float sun_depth = 5;      // metres
+constexpr float sun_height = 0.14f; // below the upper edge, as a fraction of the image's height
+constexpr float sun_depth = 5;      // meters
 constexpr int ring_points = 48;
 }
 

@@ -1,4 +1,4 @@
-// Whether files that a scene was read from changed on disk.
+// Detects changes on disk to the files that a scene was read from.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -14,10 +14,10 @@ struct InputTime {
     uintmax_t size = 0;
 };
 
-// The state of every file the scene was read from, the files of its volumes included.
+// Time and size of every file the scene was read from, including its volumes.
 std::vector<InputTime> input_times(const Scene& scene);
 
-// Those that are another file now, by time or size. A file that is away counts as unchanged: many editors remove a file
-// for a moment while they replace it.
+// The files whose time or size has changed. A missing file counts as unchanged: many editors remove a file for a moment
+// while they replace it.
 std::vector<std::filesystem::path> changed_inputs(std::span<const InputTime> known);
 }

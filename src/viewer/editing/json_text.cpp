@@ -24,7 +24,7 @@ size_t skip_comment(std::string_view text, size_t at) {
 
 bool at_comment(std::string_view text, size_t at) { return text.substr(at, 2) == "//" || text.substr(at, 2) == "/*"; }
 
-// Behind white space and comments.
+// The position after whitespace and comments.
 size_t skip_space(std::string_view text, size_t at) {
     while (at < text.size() && (is_space(text[at]) || at_comment(text, at)))
         at = is_space(text[at]) ? at + 1 : skip_comment(text, at);
@@ -45,7 +45,7 @@ size_t skip_word(std::string_view text, size_t at) {
     return end;
 }
 
-// Behind the value that begins here. Brackets are only counted: in a text that was parsed they match.
+// The position after the value that begins at `at`. Brackets are only counted: in parsed text they match.
 size_t skip_value(std::string_view text, size_t at) {
     for (int depth = 0;;) {
         if (at >= text.size()) fail_at(at);
@@ -65,11 +65,11 @@ size_t skip_value(std::string_view text, size_t at) {
 }
 
 struct Element {
-    TextSpan key, value; // of an array: no key
+    TextSpan key, value; // empty key for items of an array
     size_t begin = 0;    // of the key, or of the value
 };
 
-// Members or items of the value at a span; nothing inside a scalar.
+// Members or items of the value at a span; empty for a scalar.
 std::vector<Element> elements_of(std::string_view text, TextSpan container) {
     std::vector<Element> elements;
     const char bracket = text[container.begin];
@@ -93,7 +93,7 @@ std::vector<Element> elements_of(std::string_view text, TextSpan container) {
     return elements;
 }
 
-// A key as it was meant, its escapes undone.
+// A key without quotes and with its escapes decoded.
 std::string plain_key(std::string_view quoted) {
     const std::string_view inside = quoted.substr(1, quoted.size() - 2);
     return inside.find('\\') == inside.npos ? std::string(inside) : parse_json(quoted, "a key").string;
@@ -120,7 +120,7 @@ std::string replaced(std::string_view text, TextSpan span, std::string_view by) 
     return std::string(text.substr(0, span.begin)).append(by).append(text.substr(span.end));
 }
 
-// White space at the front of the line that a place is on.
+// The leading whitespace of the line at a position.
 std::string_view margin_at(std::string_view text, size_t place) {
     const size_t start = text.substr(0, place).rfind('\n') + 1; // npos + 1 is 0
     size_t end = start;
@@ -142,7 +142,7 @@ std::string colon_of(std::string_view text, const std::vector<Element>& elements
     return text.find("\": ") == text.npos && text.find("\":") != text.npos ? ":" : ": ";
 }
 
-// What stands between a comma and the next element of the same line.
+// The whitespace between a comma and the next element on the same line.
 std::string gap_between(std::string_view text, const std::vector<Element>& elements) {
     if (elements.size() > 1) {
         const Element& last = elements.back();
@@ -162,7 +162,7 @@ std::string into_empty(std::string_view text, TextSpan container, std::string_vi
     return replaced(text, {inner.begin, inner.begin}, " " + std::string(element));
 }
 
-// Behind the last element, whose comma goes directly behind it and whose comments stay with it.
+// Inserts after the last element: the comma directly after it, the new element after its comments.
 std::string appended(std::string_view text, TextSpan container, const std::vector<Element>& elements,
                      std::string_view element) {
     const Element& last = elements.back();

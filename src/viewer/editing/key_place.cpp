@@ -9,7 +9,7 @@ KeyPlace key_place(std::span<const float> times, bool loop, double seconds, doub
     const bool turns = loop && length > 0;
     if (turns) seconds = first + (seconds - first) - std::floor((seconds - first) / length) * length;
 
-    // The end of a turn is the start of the next.
+    // The end of a loop is the start of the next.
     const auto near = [&](float time) {
         return std::abs(time - seconds) <= reach || time == static_cast<float>(seconds);
     };

@@ -1,16 +1,16 @@
-// Where in an animation a value set by hand goes: onto the key that stands at the moment, else onto a new key there.
+// Where an edited value goes in an animation: into the key at that time, or else into a new key.
 #pragma once
 #include <span>
 
 namespace tyndall {
 struct KeyPlace {
-    size_t index = 0;   // of the key, or of the one to put a new key before
-    bool there = false; // a key stands there
-    bool seam = false;  // of a loop: its first and last key are the same moment
+    size_t index = 0;   // of the key, or of the key before which a new one is inserted
+    bool there = false; // a key exists at that time
+    bool seam = false;  // of a loop: its first and last key are the same time
     float time = 0;     // of the new key
 };
 
-// Keys within a twentieth of a frame are at the moment. A moment outside a loop is brought inside. `times` ascend and
-// are at least one.
+// Keys within a twentieth of a frame count as being at the time. A time outside a loop is wrapped into it. `times`
+// ascend and are not empty.
 KeyPlace key_place(std::span<const float> times, bool loop, double seconds, double frame_rate);
 }

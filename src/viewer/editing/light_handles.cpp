@@ -3,7 +3,7 @@
 
 namespace tyndall {
 namespace {
-constexpr float parallel = 1e-6f; // squared sine of an angle that says nothing about where along an axis a ray points
+constexpr float parallel = 1e-6f; // squared sine below which a ray does not determine a position along an axis
 
 bool has(const Scene& scene, size_t light, std::string_view property) {
     for (const Property* each : properties_of(scene, Part::light, light))
@@ -11,7 +11,7 @@ bool has(const Scene& scene, size_t light, std::string_view property) {
     return false;
 }
 
-// A sun that nothing gives a place.
+// Whether a light is a sun without a position.
 bool is_nowhere(const LightSource& light) {
     return is_distant(light) && light.node < 0 && light.position.times.empty() && light.position.values[0] == vec3(0);
 }
@@ -22,13 +22,13 @@ vec3 axis_of(Handle handle) {
 
 bool is_axis(Handle handle) { return handle == Handle::x || handle == Handle::y || handle == Handle::z; }
 
-// Where a pixel's ray meets the plane across the view through a point.
+// The intersection of a pixel's ray with the plane through a point perpendicular to the view.
 vec3 across_view(const Camera& camera, ivec2 size, vec3 place, vec2 pixel) {
     const Ray ray = camera_ray(camera, size, pixel);
     return ray.at(glm::dot(place - ray.origin, camera.forward) / glm::dot(ray.direction, camera.forward));
 }
 
-// The point nearest to a pixel on the line that an axis through a point draws in the picture.
+// The point nearest to a pixel on the projection of an axis through a point into the image.
 std::optional<vec2> on_drawn_axis(const Camera& camera, ivec2 size, vec3 place, vec3 axis, vec2 pixel) {
     const vec3 step = 16 * pixel_span(camera, size, place) * axis;
     const std::optional<vec2> a = pixel_of(camera, size, place), b = pixel_of(camera, size, place + step);
@@ -37,8 +37,8 @@ std::optional<vec2> on_drawn_axis(const Camera& camera, ivec2 size, vec3 place, 
     return *a + glm::dot(pixel - *a, along) * along;
 }
 
-// How far along an axis through a point its nearest point to a ray lies. Both lines p + s·a and o + t·d, units: the
-// shortest way between them is across both.
+// Distance along an axis through a point to where it is nearest to a ray. For the lines p + s·a and o + t·d with unit
+// directions, the shortest segment between them is perpendicular to both.
 std::optional<float> along_axis(const Ray& ray, vec3 place, vec3 axis) {
     const vec3 offset = place - ray.origin;
     const float cosine = glm::dot(axis, ray.direction), sine2 = 1 - cosine * cosine;
@@ -120,7 +120,7 @@ vec3 drag_along_axis(const Camera& camera, ivec2 size, vec3 place, vec3 axis, ve
 vec3 drag_direction(const Camera& camera, ivec2 size, vec3 place, vec3 direction, float length, vec2 to) {
     const Ray ray = camera_ray(camera, size, to);
     const float middle = glm::dot(place - ray.origin, ray.direction);
-    const vec3 nearest = ray.at(middle) - place; // of the ray to the centre of the sphere
+    const vec3 nearest = ray.at(middle) - place; // of the ray to the center of the sphere
     const float away2 = glm::dot(nearest, nearest), half2 = length * length - away2;
     if (half2 <= 0) return glm::normalize(nearest);
     const float side = glm::dot(direction, ray.direction) > 0 ? 1.0f : -1.0f;
@@ -139,7 +139,7 @@ std::vector<Edit> drag_light(const Camera& camera, ivec2 size, const Scene& scen
     if (is_axis(handle))
         return edit("position", now.position + drag_along_axis(camera, size, icon.place, axis_of(handle), from, to));
 
-    // The light turns about itself, the tip keeping its distance from the pointer; a target keeps its distance.
+    // The light rotates in place: the tip keeps its offset from the pointer, and a target keeps its distance.
     const float metres = length * pixel_span(camera, size, icon.place);
     const vec2 tip = pixel_of(camera, size, icon.place + metres * now.direction).value_or(from);
     const vec3 direction = drag_direction(camera, size, icon.place, now.direction, metres, tip + (to - from));

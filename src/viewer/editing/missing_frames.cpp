@@ -6,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-// The file that is held when a gap of a sequence is at the frame; nothing where there is no gap.
+// The file that is held for a gap of a sequence at the frame; empty if there is no gap.
 std::optional<std::filesystem::path> held_file(const MediumSource& medium, int frame) {
     for (const FileSequence* sequence : volume_sequences(medium))
         if (!sequence_file(*sequence, frame, MissingFrame::skip))

@@ -8,10 +8,10 @@
 namespace tyndall {
 struct Scene;
 
-// Frames of the scene for which a sequence of volume files lacks the file, ascending.
+// Frames of the scene for which a sequence of volume files has no file, ascending.
 std::vector<int> missing_frames(const Scene& scene);
 
-// What a frame lacks and what stands in for it: "a file of smoke is missing at this frame: smoke.0006.vdb is held".
-// Empty when there is nothing to say.
+// The missing file of a frame and what replaces it: "a file of smoke is missing at this frame: smoke.0006.vdb is held".
+// Empty if none is missing.
 std::string missing_text(const Scene& scene, int frame, MissingFrame missing);
 }

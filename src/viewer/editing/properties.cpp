@@ -58,7 +58,8 @@ bool has_lens(const Scene& scene, size_t i) {
     const CameraSource& camera = scene.cameras[i];
     return has_view_angle(scene, i) && (camera.focus || !camera.aperture.constant() || camera.aperture.values[0] > 0);
 }
-// Of a background that the file states: one that shows the map of an environment is not changed apart from it.
+// Whether the file itself states a background of this kind: one that shows the environment's map cannot be edited apart
+// from it.
 bool is_kind(const Scene& scene, BackgroundKind kind) {
     const Background& back = scene.background;
     const bool shown = scene.environment && !scene.environment->map.stated &&
@@ -194,7 +195,7 @@ const Property table[] = {
      [](Scene& s, size_t) -> Slot { return &s.background.intensity; }, is_image},
 };
 
-// Slots are where values are read as well; nothing is written through them here.
+// Slots also serve for reading; nothing is written through this one.
 Slot slot_of(const Scene& scene, const Property& property, size_t index) {
     return property.slot(const_cast<Scene&>(scene), index);
 }
@@ -275,7 +276,7 @@ LightPlace light_place(const Scene& scene, size_t light, double seconds) {
 }
 
 namespace {
-// As far as the camera's target is where the scene does not say.
+// The stated focus distance, or else the target's.
 float focus_at(const Scene& scene, size_t camera, double seconds) {
     const CameraSource& source = scene.cameras[camera];
     return source.focus ? source.focus->at(seconds)

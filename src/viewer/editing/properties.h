@@ -1,5 +1,5 @@
-// What of a scene can be changed while it is looked at: one table of lights', fog's, cameras' and the scene's own
-// numbers serves panels, scripts and saving. Values are in the units of scene files (metres, degrees, candela, lux).
+// The editable properties of a scene: one table of the values of lights, media, cameras and the scene itself, for
+// panels, scripts and saving. Values are in the units of scene files (meters, degrees, candela, lux).
 #pragma once
 #include "scene/keyed.h"
 
@@ -16,22 +16,21 @@ struct Scene;
 enum class Part { light, medium, camera, scene };
 enum class ValueKind { number, vector, color, toggle }; // number: in x; toggle: x is 0 or 1
 
-// Where a property lives in a Scene. Angles are kept in radians there. What is optional is found elsewhere until it is
-// set.
+// Where a property is stored in a Scene. Angles are in radians there. An unset optional gets its value from elsewhere.
 using Slot = std::variant<Keyed<float>*, Keyed<vec3>*, std::optional<Keyed<float>>*, float*, vec3*, bool*>;
 
 struct Property {
     Part part;
-    const char* name; // of the member of the scene file: "intensity", "background/sky/zenith"
+    const char* name; // of the scene file's member: "intensity", "background/sky/zenith"
     ValueKind kind;
     const char* unit;              // empty = none
-    float least, most;             // what a scene file may hold, every component
-    float slider_low, slider_high; // where it is mostly wanted
+    float least, most;             // the range of scene files, for each component
+    float slider_low, slider_high; // the usual range
     const char* doc;
     Slot (*slot)(Scene& scene, size_t index);
-    bool (*applies)(const Scene& scene, size_t index); // whether this light, medium … has it now
+    bool (*applies)(const Scene& scene, size_t index); // whether this light, medium ... has it at present
 
-    // Whether it is a place in the world, which a scene counts from its origin.
+    // Whether it is a position in the world, which a scene stores relative to its origin.
     bool is_place() const {
         const std::string_view member(name);
         return member == "position" || member == "target" || member == "translate" || member == "base" ||
@@ -42,23 +41,23 @@ struct Property {
 
 std::span<const Property> all_properties();
 
-// What can be changed of one light, medium or camera, or of the scene (index 0).
+// The properties of a light, medium or camera, or of the scene (index 0), that can be edited.
 std::vector<const Property*> properties_of(const Scene& scene, Part part, size_t index);
 
-// Throws Error (usage) listing what there is.
+// Throws Error (usage) listing the properties that exist.
 const Property& find_property(const Scene& scene, Part part, size_t index, std::string_view name);
 
 size_t count_of(const Scene& scene, Part part);
 const std::string& name_of(const Scene& scene, Part part, size_t index); // empty for the scene
 std::string place_of(const Scene& scene, Part part, size_t index);       // "lights/lamp", for messages; "scene"
 
-// Where a light is and which way it shines, in the world; direction of unit length, of no meaning for point lights.
+// A light's position relative to the scene's origin and its unit direction, which is meaningless for point lights.
 struct LightPlace {
     vec3 position{0}, direction{0, -1, 0};
 };
 LightPlace light_place(const Scene& scene, size_t light, double seconds);
 
-// The value at a moment; a range is infinite where none is given.
+// The value at a time; an unlimited range is infinite.
 vec3 value_at(const Scene& scene, const Property& property, size_t index, double seconds);
 bool is_keyed(const Scene& scene, const Property& property, size_t index);
 }

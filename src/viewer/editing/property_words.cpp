@@ -107,7 +107,7 @@ SliderRange slider_range(const Property& property, float value) {
     return range;
 }
 
-// Names of one ordinary word may stand for themselves in a message.
+// Names that are one ordinary word stay as they are.
 std::string in_words(Part part, std::string message) {
     for (const Row& row : rows) {
         if (row.part != part || row.name.find('_') == row.name.npos) continue;

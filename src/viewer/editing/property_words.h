@@ -1,4 +1,4 @@
-// What can be edited, in the words of those who light scenes, and over ranges fit for a hand.
+// Labels, help and slider ranges of the properties that can be edited.
 #pragma once
 #include "viewer/editing/properties.h"
 #include "viewer/state/setting_groups.h"
@@ -11,25 +11,25 @@ struct MediumSource;
 
 struct PropertyWords {
     const char* label;
-    const char* help;         // what it does to the picture
-    bool logarithmic = false; // its slider
+    const char* help;         // its effect on the image
+    bool logarithmic = false; // the slider's scale
 };
 const PropertyWords& words_of(const Property& property);
 
-// As far as a slider goes: where the value is mostly wanted, and with the value itself in it unless it is infinite.
+// The range of a slider: the usual range, extended to include the value unless that is infinite.
 SliderRange slider_range(const Property& property, float value);
 
-// A message about a part of the scene with labels for the names that scene files have.
+// A message about a part of the scene, with the names of scene files replaced by labels.
 std::string in_words(Part part, std::string message);
 
-// Where in the sky the light of a sun comes from, degrees: above the horizon, and about the vertical from +z towards
-// +x. Close to the zenith the bearing is lost.
+// The position of a sun in the sky, degrees: elevation above the horizon, and azimuth about the vertical from +z
+// towards +x, which is undefined at the zenith.
 struct SunPlace {
     float height = 0, bearing = 0;
 };
-SunPlace sun_place(vec3 direction);         // the way the light travels, of any length
+SunPlace sun_place(vec3 direction);         // direction of travel, of any length
 vec3 direction_from(const SunPlace& place); // of unit length
 
-// Of lights and fog, for people: "spot", "sun", "homogeneous fog".
+// The displayed name of a medium's kind: "homogeneous fog".
 const char* kind_name(const MediumSource& medium);
 }

@@ -47,7 +47,7 @@ void check_value(const Scene& scene, const Property& property, const Edit& edit)
     if (!(std::abs(edit.seconds) <= 1e6)) refuse(place_of(scene, edit), "the moment is not within a million seconds");
 }
 
-// Everything that hangs on the value just set.
+// Updates what depends on the value just set.
 void follow(const Scene& scene, LightSource& light, const Edit& edit) {
     if (edit.property == "position" || edit.property == "direction") light.node = -1;
     if (light.target && (edit.property == "position" || edit.property == "target"))
@@ -60,7 +60,7 @@ void follow(Background& background, const Edit& edit) {
     if (edit.property == "background/sky/horizon" && !background.own_ground) background.ground = background.color;
 }
 
-// What scene files refuse.
+// Refuses what the reader of scene files refuses.
 void check(const LightSource& light, const std::string& place) {
     const auto is_zero = [](vec3 direction) { return glm::dot(direction, direction) == 0; };
     if (is_aimed(light) && std::ranges::any_of(light.direction.values, is_zero))
@@ -84,7 +84,7 @@ void check(const CameraSource& camera, const std::string& place) {
         refuse(place, "camera and target would be one point: there is no direction to look in");
 }
 
-// A change of one thing, taken back when something of it is refused.
+// Applies a change to one part, and undoes it if it is refused.
 template<class T, class Change> void all_or_nothing(T& thing, const Change& change) {
     T before = thing;
     try {
@@ -133,7 +133,7 @@ bool is_animated(const Scene& scene, int node) {
     return false;
 }
 
-// A light leaves its node with both place and direction: a scene file asks for both.
+// Detaches a light from its node with both its position and direction, as a scene file requires both.
 std::vector<Edit> off_its_node(const Scene& scene, const Edit& edit) {
     const LightSource& light = scene.lights[edit.index];
     if (is_animated(scene, light.node))
@@ -153,7 +153,7 @@ std::vector<Edit> apply(Scene& scene, const Edit& edit) {
     if (edit.index >= count_of(scene, edit.part))
         fail(ExitCode::usage, edit.property, "there is no such thing to change");
     Edit clean = edit;
-    clean.value += 0.0f; // -0 is 0: JSON readers do not keep its sign
+    clean.value += 0.0f; // turns -0 into 0: JSON readers do not keep its sign
     const Property& property = find_property(scene, clean.part, clean.index, clean.property);
     check_value(scene, property, clean);
     if (property.is_place() && scene.origin != dvec3(0))

@@ -20,14 +20,14 @@ std::vector<Edit> edits_in_force(const SceneSession& session) {
     return edits;
 }
 
-// The scene with the first steps only.
+// Sets the scene to the state after the first `steps` steps.
 void go_to(SceneSession& session, size_t steps) {
     put_parts(session.before, session.scene);
     session.done = steps;
     for (const Edit& each : edits_in_force(session)) apply_again(session.scene, each);
 }
 
-// The file's text and the scene made of that very text.
+// Reads the file's text and a scene from exactly that text.
 SceneSession read_scene_session(const std::filesystem::path& file, const LoadOptions& options) {
     for (int attempt = 0; attempt < 10; ++attempt) {
         SceneSession session;
@@ -60,7 +60,7 @@ std::string line_of(const Scene& scene, const Edit& edit) {
                      edit.property.c_str(), edit.value.x, edit.value.y, edit.value.z, edit.seconds);
 }
 
-// What was meant by an edit, to be found again in a scene read anew: the n-th thing of a name.
+// The target of an edit, to be found in a reloaded scene: the n-th part with a name.
 struct Target {
     std::string name;
     size_t number = 0;
@@ -79,7 +79,7 @@ std::optional<size_t> index_of(const Scene& scene, Part part, const Target& targ
     return {};
 }
 
-// Makes a step of another session again; a line for each edit that is not possible any more.
+// Repeats a step of another session; adds a line to `lost` for each edit that is not possible.
 void make_again(const Scene& old, const EditStep& step, SceneSession& session, std::vector<std::string>& lost) {
     EditStep made;
     for (Edit each : step.edits) {
@@ -102,7 +102,7 @@ void make_again(const Scene& old, const EditStep& step, SceneSession& session, s
     session.done = session.steps.size();
 }
 
-// Adds an edit to a step, or the value to the edit that it continues.
+// Adds an edit to a step, or its value to the edit that it continues.
 void add_to(std::vector<Edit>& edits, const Edit& edit) {
     const auto same = [&](const Edit& e) {
         return e.part == edit.part && e.index == edit.index && e.property == edit.property;
@@ -135,7 +135,7 @@ SceneSession open_session(const std::filesystem::path& file, const LoadOptions& 
 void edit(SceneSession& session, const Edit& edit, uint64_t drag) {
     const std::vector<Edit> singles = apply(session.scene, edit);
 
-    // What was undone is gone now, and with it perhaps the state that was saved.
+    // Discards the undone steps, and with them perhaps the saved state.
     const bool branches = session.done < session.steps.size();
     session.steps.resize(session.done);
     session.kept = std::min(session.kept, session.done);
@@ -175,7 +175,7 @@ std::string unsaved_text(const SceneSession& session) {
     if (first < session.saved) text = formatted("without the last %zu steps that were saved\n", session.saved - first);
     for (size_t i = first; i < session.done; ++i)
         for (const Edit& each : session.steps[i].edits) text += line_of(session.scene, each);
-    // Lines may name two things alike, and what was undone is not in them.
+    // The hash covers what the lines do not: which of two parts with the same name, and undone steps.
     if (text.empty()) return text;
     return text + "scene " + content_hash(edited_text(session.text, session.scene, edits_in_force(session))) + "\n";
 }

@@ -22,14 +22,14 @@ Json json_at(std::string_view text, std::string_view pointer) {
     return parse_json(find_json(text, pointer)->of(text), pointer);
 }
 
-// A number keeps its digits when they say the value already.
+// A number keeps its digits if they already give the value.
 void write_number(std::string& text, const std::string& pointer, float value) {
     const Json old = json_at(text, pointer);
     if (old.kind == Json::Kind::number && static_cast<float>(old.number) == value) return;
     text = with_json(text, pointer, json_number(value));
 }
 
-// A value without keys, over the one that stands there.
+// Replaces a constant value.
 void write_value(std::string& text, const std::string& pointer, const Property& property, vec3 value) {
     const Json old = json_at(text, pointer);
     const bool grey = old.kind == Json::Kind::number && is_grey(value);
@@ -49,7 +49,7 @@ vec3 color_of(const Json& json) {
             static_cast<float>(json.items[2].number)};
 }
 
-// A value with keys: what scene_edit does to the keys in memory.
+// Writes to an animated value what scene_edit.cpp does to its keys in memory.
 void write_key(std::string& text, const std::string& pointer, const Property& property, const Edit& edit,
                double frame_rate) {
     const Json keyed = json_at(text, pointer);
@@ -68,7 +68,7 @@ void write_key(std::string& text, const std::string& pointer, const Property& pr
     write_value(text, json_pointer(list, place.index) + "/1", property, edit.value);
 }
 
-// A new last entry of a list in the root, on a line of its own where the text has lines.
+// Appends an entry to a list in the root, on its own line if the text has several lines.
 std::string add_entry(std::string& text, const char* list, const std::string& entry) {
     const std::string pointer = "/" + std::string(list);
     const std::string indent = indentation_of(text), line = line_end_of(text);
@@ -85,7 +85,7 @@ std::string add_entry(std::string& text, const char* list, const std::string& en
 struct Writer {
     std::string& text;
     const Scene& scene;
-    std::vector<std::string> lights, cameras; // where each stands in the text; empty = nowhere yet
+    std::vector<std::string> lights, cameras; // the JSON pointer of each in the text; empty = not there yet
 
     Writer(std::string& to, const Scene& from) : text(to), scene(from) {
         for (const LightSource& light : scene.lights) lights.push_back(light.entry);
@@ -162,7 +162,7 @@ std::string new_scene_text(Scene& scene) {
 }
 
 std::string moved_text(std::string text, const std::filesystem::path& from, const std::filesystem::path& to) {
-    std::error_code error; // folders that are not there, or not to be looked into, are different ones
+    std::error_code error; // folders that are missing or unreadable count as different
     if (std::filesystem::equivalent(from, to, error)) return text;
     const auto move = [&](const std::string& pointer, bool must_be_there) {
         const auto span = find_json(text, pointer);

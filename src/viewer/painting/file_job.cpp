@@ -19,7 +19,7 @@ std::vector<int> frames_of(const Scene& scene, const std::string& range) {
     return range.empty() ? frames_between(scene.first_frame, scene.last_frame) : parse_frames(range);
 }
 
-// The camera moved by hand, as one of the scene's under a name that none has.
+// Adds the camera moved by hand to the scene, under an unused name.
 std::string add_camera(Scene& scene, const Viewpoint& view) {
     CameraSource source;
     source.name = "view";

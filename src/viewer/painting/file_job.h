@@ -1,4 +1,4 @@
-// Work that writes files while the viewer goes on: frames as tyndall render makes them, fog as tyndall bake does.
+// Background jobs that write files: frames like those of tyndall render, volumes like those of tyndall bake.
 #pragma once
 #include "base/error.h"
 #include "base/io/progress.h"
@@ -10,7 +10,7 @@
 
 namespace tyndall {
 struct RenderFiles {
-    std::shared_ptr<const Scene> scene; // the request's own, with the edits of the moment it was asked for
+    std::shared_ptr<const Scene> scene; // a copy for this request, with the edits at the time of asking
     RenderRequest request;
 };
 
@@ -22,23 +22,23 @@ struct BakeFiles {
 
 using FileJob = std::variant<RenderFiles, BakeFiles>;
 
-// The frames of a range, the scene's when it is empty, as the state shows them; those that are already there and right
-// are kept. Throws Error (usage: before the first scene, of range and pattern).
+// The request that renders the frames of a range (empty: the scene's) as the state shows them; files that exist and are
+// up to date are kept. Throws Error (usage: no scene is loaded, or the range or pattern is wrong).
 RenderRequest sequence_request(const ViewState& state, const std::string& output, const std::string& range, bool png,
                                const std::string& isa);
 
-// With a scene of its own, and with the camera moved by hand as one of that.
+// The job of a request, with a copy of the scene to which a camera moved by hand is added.
 RenderFiles render_files(const ViewState& state, RenderRequest request);
 
-// The fog of a medium that is grown from a recipe, with its edits; its optics, for the files' metadata, are those of
-// the first frame. Throws Error (usage).
+// The job that bakes a medium made from a recipe, with its edits; the optics in the files' metadata are those of the
+// first frame. Throws Error (usage).
 BakeFiles bake_files(const ViewState& state, const std::string& medium, const std::string& output,
                      const std::string& range);
 
 // Names of the media that can be baked.
 std::vector<std::string> bakeable_media(const Scene& scene);
 
-// The command line that does the same. Throws Error (usage) when the scene's files do not have what is shown.
+// The command line that does the same. Throws Error (usage) if the scene's files do not contain what is shown.
 std::string command_of(const ViewState& state, RenderRequest request);
 
 // How a job ended.
@@ -47,14 +47,14 @@ struct JobResult {
     ExitCode code = ExitCode::ok;
 };
 
-// "render out.####.exr", and how many frames.
+// "render out.####.exr", and the number of frames.
 std::string name_of(const FileJob& job);
 int frame_count(const FileJob& job);
 
-// Does it; no file is ever partial, and an error is a result. `progress` runs to frame_count().
+// Runs a job; no file is ever partial, and an error is returned as a result. `progress` runs to frame_count().
 JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& cancel);
 
-// scene.march.####.exr, fog.####.vdb
+// Default names of outputs: scene.march.####.exr, fog.####.vdb.
 std::string usual_sequence_name(const ViewState& state);
 std::string usual_bake_name(const std::string& medium);
 }

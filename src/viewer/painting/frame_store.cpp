@@ -13,7 +13,7 @@ namespace tyndall {
 namespace {
 uint64_t page_bytes() { return static_cast<uint64_t>(sysconf(_SC_PAGESIZE)); }
 
-// Of this process: all that hangs on snapshots counts, wherever it is.
+// Resident memory of this process, which includes everything that snapshots refer to.
 uint64_t resident_bytes() {
     uint64_t all = 0, resident = 0;
     std::ifstream("/proc/self/statm") >> all >> resident;

@@ -1,4 +1,4 @@
-// Scenes at the moments that were looked at, with all that was made for them: a loop is grown, read and lit once.
+// A cache of snapshots by frame, with everything computed from them: a loop is loaded, grown and lit only once.
 #pragma once
 #include "trace/snapshot.h"
 
@@ -9,7 +9,7 @@
 namespace tyndall {
 struct Scene;
 
-// How much memory the frames of a store may take: a quarter of the machine's.
+// The default memory limit of a store: a quarter of the machine's memory.
 uint64_t usual_store_bytes();
 
 class FrameStore {
@@ -17,20 +17,20 @@ public:
     explicit FrameStore(uint64_t max_bytes = usual_store_bytes());
     ~FrameStore();
 
-    // Forgets everything that is not of this scene and policy.
+    // Discards everything that belongs to another scene or policy.
     void begin(const std::shared_ptr<const Scene>& scene, MissingFrame missing);
     void clear();
 
-    // A frame that is left. When memory is full it is not kept, and nor are those after it: what a loop comes back to
-    // last is what it has left last.
+    // Stores a frame that is no longer shown. Once memory is full, new frames are not stored: a loop returns last to
+    // the frames it left last.
     void put(const Snapshot& snapshot);
 
-    // The frame as it was left or made ahead, its things ready to be found; nothing when it has to be made. What making
-    // it ahead took is added to `seconds`.
+    // The stored or prefetched frame, with its cache ready for reuse; empty if it has to be made. Adds the time of
+    // prefetching it to `seconds`.
     std::optional<Snapshot> take(int frame, double& seconds);
 
-    // Makes a frame that will be asked for, sharing with `current`; false when it is there already. What the user
-    // caused is said when it is asked for.
+    // Prefetches a frame, sharing data with `current`; false if it exists already or fails. Errors are reported when
+    // the frame is requested.
     bool make_ahead(int frame, const Snapshot& current);
 
     size_t size() const;
@@ -41,6 +41,6 @@ private:
     std::map<int, Snapshot> frames_;
     std::optional<Snapshot> ahead_;
     double ahead_seconds_ = 0;
-    uint64_t max_bytes_ = 0, bytes_before_ = 0; // resident before the first frame
+    uint64_t max_bytes_ = 0, bytes_before_ = 0; // resident memory before the first frame
 };
 }

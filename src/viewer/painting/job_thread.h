@@ -1,4 +1,4 @@
-// One thread for a job that writes files. The interface starts it, looks how far it is, stops it; it never waits.
+// A thread for a job that writes files. The interface starts it, polls its progress and stops it, without waiting.
 #pragma once
 #include "viewer/painting/file_job.h"
 
@@ -15,20 +15,20 @@ public:
     JobThread(const JobThread&) = delete;
     JobThread& operator=(const JobThread&) = delete;
 
-    // Throws Error (usage) while another one runs.
+    // Throws Error (usage) while another job runs.
     void start(FileJob job);
 
-    // No frame is begun any more, and those being rendered are given up.
+    // Starts no more frames, and abandons those being rendered.
     void stop();
 
-    std::optional<JobResult> take_result();  // of a job that has ended, once; until then it counts as running
-    std::optional<JobStatus> status() const; // of the job that runs
+    std::optional<JobResult> take_result();  // of a finished job, once; until then it counts as running
+    std::optional<JobStatus> status() const; // of the running job
 
 private:
     void run(const FileJob& job);
 
     std::function<void()> news_;
-    mutable std::mutex mutex_; // held for moments only
+    mutable std::mutex mutex_; // held only briefly
     std::shared_ptr<Progress> progress_;
     std::string name_;
     int frames_ = 0;

@@ -4,9 +4,9 @@
 
 namespace tyndall {
 namespace {
-constexpr double late = 1.15;      // of the time wanted
-constexpr double in_time = 0.85;   // of it, as expected of a larger picture
-constexpr double min_share = 0.25; // of the time wanted that pixels always get
+constexpr double late = 1.15;      // times the wanted time
+constexpr double in_time = 0.85;   // times the wanted time, for the predicted time of a larger image
+constexpr double min_share = 0.25; // fraction of the wanted time that pixels always get
 constexpr int pictures_to_bar = 60;
 
 double area(int level) {
@@ -20,7 +20,7 @@ void measured(Pace& pace, double seconds, double fixed) {
     const double pixels = std::max(seconds - fixed, 0.0);
     if (pace.pictures_barred > 0) --pace.pictures_barred;
 
-    // Down to what fits; the level that did not is left alone for a while.
+    // Drop to a level that fits; do not retry the one that was too slow for a while.
     if (seconds > late * pace.wanted && level < last) {
         const double time = std::max(pace.wanted - fixed, min_share * pace.wanted);
         int lower = level;

@@ -1,22 +1,23 @@
-// How large pictures may be so that there are as many in a second as wanted.
+// Adapts the size of quick images to reach the wanted frame rate.
 #pragma once
 #include <array>
 #include <cstddef>
 
 namespace tyndall {
-// Width and height of quick pictures as shares of the whole one's.
+// Width and height of quick images, as fractions of the full size.
 inline constexpr std::array<float, 7> pace_shares{1, 0.75f, 0.5f, 0.375f, 0.25f, 0.1875f, 0.125f};
 
 struct Pace {
-    double wanted = 1.0 / 30; // seconds for a picture
+    double wanted = 1.0 / 30; // seconds per image
     int level = 4;            // of pace_shares
     int barred = -1;          // a level that was too slow,
-    int pictures_barred = 0;  // and for how many pictures it is not tried again
+    int pictures_barred = 0;  // and the number of images until it is tried again
 
     float share() const { return pace_shares[static_cast<size_t>(level)]; }
 };
 
-// A picture at the pace's level took so many seconds, `fixed` of them whatever its size. Smaller at once when that was
-// too long, but never for less than a quarter of that time spent on pixels; larger by one level when that will fit.
+// Updates the level after an image that took `seconds`, `fixed` of them independent of its size. If that was too long,
+// drops at once to a level that fits, but allows pixels at least a quarter of the wanted time; rises by one level if
+// that is predicted to fit.
 void measured(Pace& pace, double seconds, double fixed);
 }

@@ -15,7 +15,7 @@
 namespace tyndall {
 namespace {
 
-// The scene at the request's moment. What stands still is shared with the picture before.
+// Loads the scene at the request's frame. Static data is shared with the previous image.
 void load(Painter& painter, const Request& request) {
     const double start = steady_seconds();
     double ahead_seconds = 0;
@@ -48,7 +48,7 @@ void note_times(Painter& painter, const FrameStats& stats) {
     times.prepare = stats.prepare_seconds, times.render = stats.render_seconds, times.fog = stats.fog_seconds;
 }
 
-// One ray a pixel of the quick mode.
+// One sample per pixel of the quick mode.
 Layers render_quick(Painter& painter, const Request& request, float share, std::atomic<bool>& cancel) {
     View view = view_of(request);
     view.size = glm::min(glm::max(ivec2(glm::round(vec2(view.size) * share)), ivec2(8)), view.size);
@@ -84,7 +84,7 @@ ShownPicture paint_stand_in(Painter& painter, const Request& request, std::atomi
     return shown(painter, request);
 }
 
-// What the mode gets wrong here, worst first.
+// The mode's limitations in this view, worst first.
 std::vector<LimitationGroup> limitations_of(const Painter& painter, const Request& request) {
     const Mode& mode = find_mode(request.mode);
     auto groups = groups_of(mode.limitations(view_of(request), painter.snapshot, request.settings));
@@ -92,7 +92,7 @@ std::vector<LimitationGroup> limitations_of(const Painter& painter, const Reques
     return groups;
 }
 
-// Whose round comes next: of those that are not finished, the one that has had the fewest.
+// Which gets the next round: of those not finished, the one with the fewest rounds.
 enum class Turn { mode, beside, reference };
 
 Turn next_turn(const Painter& painter, const Request& request) {
@@ -133,7 +133,7 @@ ShownPicture paint_round(Painter& painter, const Request& request, std::atomic<b
     return shown(painter, request);
 }
 
-// Forgets the picture before.
+// Discards the previous image and starts a new one.
 void begin(Painter& painter, const Request& request) {
     painter.begun = false;
     painter.picture = {};
@@ -151,10 +151,10 @@ std::optional<ShownPicture> next_picture(Painter& painter, const Request& reques
     stage(request);
     if (!same) begin(painter, request);
     painter.request = request;
-    // Until this picture has begun, the layers are those of another.
+    // Until this image has started, the layers belong to another one.
     if (shown_anew && !painter.picture.mode.empty()) return shown(painter, request);
     if (request.moving) {
-        // A still picture that has begun is better than a quick one.
+        // A still image that has started is better than a quick one.
         if (!painter.quick && painter.rounds[0].rounds == 0) return paint_quick(painter, request, cancel);
         if (request.next_frame) painter.store.make_ahead(*request.next_frame, painter.snapshot);
         return {};

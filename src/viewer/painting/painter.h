@@ -1,6 +1,6 @@
-// Pictures of one request, each better than the one before: a quick small one while things move, then a whole one of
-// the stand-in mode, then rounds of samples of the mode asked for, averaged; in turns with those of the mode beside and
-// of the reference, when they are shown.
+// Progressive images for a request: a quick small one while things move, then a full-size one of the stand-in mode,
+// then averaged rounds of samples of the requested mode, alternating with those of the comparison mode and of the
+// reference, if shown.
 #pragma once
 #include "modes/history.h"
 #include "viewer/painting/frame_store.h"
@@ -15,30 +15,30 @@
 #include <optional>
 
 namespace tyndall {
-// What lasts from picture to picture.
+// State that is kept from image to image.
 struct Painter {
     std::shared_ptr<const Scene> scene;          // of the snapshot,
     std::shared_ptr<const EditableParts> edited; // and the edits in it
     Snapshot snapshot;
     FrameStore store; // of this scene's frames
-    History history;  // of quick pictures
+    History history;  // of quick images
     std::map<std::string, Pace> paces;
-    std::optional<double> exposure; // measured,
-    int measures = -1;              // for this number of the request, and of `measured`
+    std::optional<double> exposure; // measured for ...
+    int measures = -1;              // ... this Request::measures and the scene `measured`
     std::weak_ptr<const Scene> measured;
-    int ticks = 0; // quick pictures and stand-ins so far
+    int ticks = 0; // quick images and stand-ins so far
     bool begun = false;
-    Request request; // of the newest picture
+    Request request; // of the newest image
     bool quick = false, stood_in = false;
-    Rounds rounds[2]; // of the mode, whose layers may be those of a quick picture, and of the mode beside
+    Rounds rounds[2]; // of the mode, whose layers may be those of a quick image, and of the comparison mode
     ReferencePicture reference;
     std::shared_ptr<const RayAnswer> ray;
     std::shared_ptr<const VolumePicture> volume;
     KnownVolumes known_volumes;
-    ShownPicture picture; // all but its codes
+    ShownPicture picture; // everything except its codes
 };
 
-// The next picture for a request; nothing when there is none to come. What the user caused is in ShownPicture::error.
-// When `cancel` is set from outside, the work ends soon and nothing comes of it.
+// The next image for a request; empty if there is none. Errors are returned in ShownPicture::error. If `cancel` is set
+// from another thread, the work ends soon without a result.
 std::optional<ShownPicture> paint(Painter& painter, const Request& request, std::atomic<bool>& cancel);
 }

@@ -1,4 +1,4 @@
-// What of a painter's layers is shown: codes of the layer asked for, two pictures in one, errors, answers.
+// Composes the shown image from a painter's layers: the requested layer, two images in one, errors, answers.
 #include "viewer/painting/painter_show.h"
 #include "base/clock.h"
 #include "modes/history.h"
@@ -19,14 +19,14 @@ bool asks_for_volume(const Painter& painter, const Request& request) {
                                (request.moving || !last->quick));
 }
 
-// The reference of a picture of this size, as far as it has got and is shown.
+// The reference so far, if it is shown and matches this image's size; else null.
 const ReferencePicture* shown_reference(const Painter& painter, const Request& request) {
     const Rounds& rounds = painter.reference.rounds;
     const bool there = wants_reference(request) && rounds.rounds > 0 && is_reference_of(painter.reference, request);
     return there && rounds.layers.size == painter.rounds[0].layers.size ? &painter.reference : nullptr;
 }
 
-// What of a mode's picture is shown, and its errors where these are.
+// Display codes of the layer shown of a mode's image, and its errors if that layer shows them.
 Image<glm::u8vec4> codes_of(const Rounds& rounds, const ReferencePicture* reference, const Request& request,
                             std::optional<ErrorFigures>& errors) {
     errors.reset();
@@ -35,7 +35,7 @@ Image<glm::u8vec4> codes_of(const Rounds& rounds, const ReferencePicture* refere
     return error_codes(rounds.layers, layers_of(*reference));
 }
 
-// Two pictures as one: the right one from the wipe on, or both whole beside each other.
+// Combines two images into one: the right one from the wipe on, or both in full side by side.
 void put_beside(const Image<glm::u8vec4>& right, const Shown& shown, Image<glm::u8vec4>& codes) {
     const ivec2 size = codes.size;
     const int shift = shown.side_by_side ? size.x : 0;
@@ -69,7 +69,7 @@ std::shared_ptr<const PixelValues> values_of(const Layers& layers) {
     return std::make_shared<const PixelValues>(PixelValues{layers.color, layers.depth});
 }
 
-// The request with an exposure: the one that was measured, or is now.
+// The request with an exposure: the one already measured, or measured here.
 Request exposed(Painter& painter, Request request) {
     if (request.shown.exposure) return request;
     if (painter.measures != request.measures || painter.measured.lock() != request.scene) {

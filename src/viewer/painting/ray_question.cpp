@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int noisy_samples = 2048; // of modes whose error is noise: soon there, and within a few percent
+constexpr int noisy_samples = 2048; // for modes whose error is noise: fast, and accurate to a few percent
 
 bool is_of(const Request& request, const RayAnswer* answer) {
     return answer && request.explain && answer->revision == request.revision && answer->pixel == *request.explain;

@@ -1,4 +1,4 @@
-// What happens on the ray of a pixel, asked while looking at a picture.
+// Explains what happens on the ray of a pixel of the shown image.
 #pragma once
 #include "measure/explain/explain.h"
 
@@ -9,18 +9,18 @@ struct Request;
 struct Snapshot;
 
 struct RayAnswer {
-    uint64_t revision = 0; // of the picture it was asked of
+    uint64_t revision = 0; // of the image it refers to
     ivec2 pixel{0};
     int frame = 1;
     RayStory story;
-    bool complete = false; // modes have been asked too
+    bool complete = false; // includes the answers of the modes
     double seconds = 0;
 };
 
-// Whether the request asks for a ray that `answer` does not tell all of.
+// Whether the request asks for a ray that `answer` does not fully explain.
 bool asks_for_ray(const Request& request, const RayAnswer* answer);
 
-// What comes next: first the ray itself, then the same with every mode's answer. Throws Error (internal) when
+// The next answer: first the ray itself, then the same with every mode's answer. Throws Error (internal) when
 // cancelled.
 std::shared_ptr<const RayAnswer> answer_ray(const Request& request, const Snapshot& snapshot, const RayAnswer* before,
                                             std::atomic<bool>& cancel);

@@ -13,7 +13,7 @@
 
 namespace tyndall {
 namespace {
-constexpr double worth_saying = 5e-4; // of a bias
+constexpr double worth_saying = 5e-4; // the smallest bias that is mentioned
 
 std::string bits_of(const Camera& camera) {
     CacheKey key;
@@ -31,8 +31,8 @@ std::string key_of(const Request& request, const Settings& settings) {
     return key + bits_of(request.camera);
 }
 
-// Of the mean of n samples, when halves of a and b samples differ by d on the root mean square: each sample's variance
-// is d² / (1/a + 1/b).
+// Relative standard error of the mean of n samples, from halves of a and b samples whose RMS difference is d: the
+// variance of a sample is d² / (1/a + 1/b).
 double standard_error(const Image<vec3>& a, const Image<vec3>& b, std::array<int, 2> samples, double mean) {
     const double n = samples[0] + samples[1];
     const double part = std::sqrt(static_cast<double>(samples[0]) * samples[1]) / n;
@@ -47,7 +47,7 @@ Image<vec3> difference(const Image<vec3>& a, const Image<vec3>& b) {
     return result;
 }
 
-// Of what a picture's layer differs by from the reference's.
+// Noise of the difference between a layer of an image and of the reference.
 double noise_of(const Rounds& picture, const Rounds& reference, Image<vec3> ColorLayers::*layer, double mean) {
     const auto half = [&](size_t i) { return difference(picture.halves[i].*layer, reference.halves[i].*layer); };
     return standard_error(half(0), half(1), reference.half_samples, mean);

@@ -1,4 +1,4 @@
-// One thread that owns rendering. The interface posts what it wants and looks for what is there; it never waits.
+// The thread that owns rendering. The interface posts requests and polls for results, without waiting.
 #pragma once
 #include "viewer/painting/request.h"
 #include "viewer/painting/save_picture.h"
@@ -13,7 +13,7 @@
 namespace tyndall {
 struct Painter;
 
-// Pictures made so far.
+// Images made so far.
 struct PictureCounts {
     int pictures = 0, quick = 0;
     double quick_seconds = 0; // spent on the quick ones,
@@ -22,24 +22,24 @@ struct PictureCounts {
 
 class RenderThread {
 public:
-    // `news` is called from the thread when there is something to look for.
+    // `news` is called from the thread when there is a new result.
     explicit RenderThread(std::function<void()> news = {});
-    ~RenderThread(); // ends what is being made
+    ~RenderThread(); // cancels work in progress
     RenderThread(const RenderThread&) = delete;
     RenderThread& operator=(const RenderThread&) = delete;
 
-    // The newest request counts. Work on an older one is cancelled, but for a quick picture while things go on moving.
+    // Replaces the previous request. Cancels work on it, except for a quick image while things keep moving.
     void post(Request request);
 
-    // Made one after the other, before anything else.
+    // Queues a file to save; these are made one at a time, before anything else.
     void save(SaveJob job);
 
-    // The newest picture that was not taken yet; null when there is none.
+    // The newest image that was not taken yet; null if there is none.
     std::shared_ptr<const ShownPicture> take_picture();
     std::optional<Saved> take_saved();
 
-    bool idle() const;     // nothing is being made or will be, and everything was taken
-    double saving() const; // share done of the file being written; negative: none is
+    bool idle() const;     // nothing is in progress or pending, and the image was taken
+    double saving() const; // progress of the file being written, 0 to 1; negative: none
     PictureCounts counts() const;
 
 private:
@@ -47,7 +47,7 @@ private:
     void make_file(SaveJob job);
 
     std::function<void()> news_;
-    mutable std::mutex mutex_; // held for moments only
+    mutable std::mutex mutex_; // held only briefly
     std::condition_variable wake_;
     std::optional<Request> pending_;
     std::deque<SaveJob> saves_;
@@ -57,7 +57,7 @@ private:
     bool stop_ = false, unfinished_ = false, working_ = false, painting_quick_ = false;
     std::atomic<bool> cancel_{false}, cancel_save_{false};
     std::atomic<double> saving_{-1};
-    const std::unique_ptr<Painter> painter_; // the thread's own
+    const std::unique_ptr<Painter> painter_; // used only by the thread
     std::thread thread_;
 };
 }

@@ -18,7 +18,7 @@ RenderRequest render_request(const Request& request) {
     result.resolution = request.size, result.seed = request.seed, result.missing = request.missing;
     if (!request.scene) return result;
     result.scene_file = request.scene->file;
-    if (shutter_of(*request.scene, result)) result.shutter = Shutter{}; // what is looked at is a still
+    if (shutter_of(*request.scene, result)) result.shutter = Shutter{}; // the viewer shows stills
     return result;
 }
 

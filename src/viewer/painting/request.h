@@ -1,4 +1,4 @@
-// What the interface asks for, and the pictures it gets.
+// What the interface asks the render thread for.
 #pragma once
 #include "base/io/file_sequence.h"
 #include "modes/settings.h"
@@ -14,48 +14,48 @@ struct RenderRequest;
 struct Scene;
 struct View;
 
-// What of a medium's density is to be seen.
+// How a medium's density is shown.
 enum class VolumeLook { slice, maximum, mean };
 struct VolumeQuestion {
     std::string medium; // empty = the first
     VolumeLook look = VolumeLook::slice;
-    int axis = 2;          // across which, or along which
-    float position = 0.5f; // of a slice, as a share of the medium's extent
+    int axis = 2;          // of the slice's normal, or of the projection
+    float position = 0.5f; // of a slice, as a fraction of the medium's extent
 
     bool operator==(const VolumeQuestion&) const = default;
 };
 
 struct Request {
-    std::shared_ptr<Scene> scene;                // only the thread that renders touches it, and puts `edited` into it
+    std::shared_ptr<Scene> scene;                // used only by the render thread, which copies `edited` into it
     std::shared_ptr<const EditableParts> edited; // null: the scene as it is
-    uint64_t revision = 0;                       // another number: the picture is another one
-    uint64_t shown_revision = 0;                 // another number: the same picture is shown in another way
-    bool moving = false;                         // the next change is near: quick pictures only
+    uint64_t revision = 0;                       // changes when the image changes
+    uint64_t shown_revision = 0;                 // changes when only the display of the image changes
+    bool moving = false;                         // another change is expected soon: quick images only
     int frame = 1;
-    std::optional<int> next_frame; // that will be asked for, while playing
+    std::optional<int> next_frame; // the next to be requested, while playing
     Camera camera;
     ivec2 size{640, 360};
     std::string mode = main_mode_name();
-    std::string stand_in = interactive_mode_name(); // mode of quick pictures when `mode` is slow; empty = the same
-    std::string beside; // mode of the right part of still pictures, or reference; empty = none
+    std::string stand_in = interactive_mode_name(); // mode of quick images if `mode` is slow; empty = the same
+    std::string beside; // mode of the right part of still images, or the reference; empty = none
     Settings settings;
     uint32_t seed = 0;
     MissingFrame missing = MissingFrame::error;
     Shown shown;
-    int measures = 0;             // another number: an exposure that was measured is measured anew
-    std::optional<ivec2> explain; // a pixel whose ray is asked about
+    int measures = 0;             // changes when automatic exposure has to be measured again
+    std::optional<ivec2> explain; // a pixel whose ray is to be explained
     std::optional<VolumeQuestion> volume;
-    int max_samples = 64;             // per pixel, after which a picture is finished
-    double wanted_seconds = 1.0 / 30; // of quick pictures
+    int max_samples = 64;             // per pixel, after which an image is finished
+    double wanted_seconds = 1.0 / 30; // per quick image
 };
 
-// The mode of quick pictures.
+// The mode of quick images.
 const std::string& quick_mode(const Request& request);
 
-// What tyndall render would be told to make the finished picture.
+// The request to tyndall render that gives the finished image.
 RenderRequest render_request(const Request& request);
 View view_of(const Request& request);
 
-// Puts the edits of the request into its scene: before anything is read from it.
+// Copies the request's edits into its scene; call before reading from the scene.
 void stage(const Request& request);
 }

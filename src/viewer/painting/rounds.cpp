@@ -14,10 +14,10 @@
 namespace tyndall {
 namespace {
 
-constexpr double longest_round = 0.4; // seconds; the picture is renewed at least as often
+constexpr double longest_round = 0.4; // seconds; the image is updated at least as often
 constexpr int max_round_samples = 8;
 
-// Into the mean of one half.
+// Adds a round to the mean of one half.
 void add_to_half(const Layers& layers, int samples, ColorLayers& half, int& half_samples) {
     if (half_samples == 0) half = {Image<vec3>(layers.size), Image<vec3>(layers.size)};
     half_samples += samples;
@@ -28,7 +28,7 @@ void add_to_half(const Layers& layers, int samples, ColorLayers& half, int& half
     }
 }
 
-// What a mode prepares serves all rounds, unless it is a part of the picture's noise.
+// Reuses a mode's preparation for all rounds, unless it contributes to the image's noise.
 void prepare(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, Rounds& rounds,
              FrameOptions& options, FrameStats& stats) {
     if (mode.remembers) return;
@@ -73,7 +73,7 @@ void add_round(Round round, const Request& request, Rounds& rounds) {
 }
 
 int round_samples(const Rounds& rounds, const Request& request, const Rounds* like) {
-    if (rounds.rounds == 0) return 1; // one sample alone lies in the middle of its pixel
+    if (rounds.rounds == 0) return 1; // a single sample lies at the pixel's center
     const int left = request.max_samples - rounds.samples;
     const size_t number = static_cast<size_t>(rounds.rounds);
     if (like && number < like->made.size()) return std::min(like->made[number], left);

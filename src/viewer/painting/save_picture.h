@@ -1,4 +1,4 @@
-// A picture of the viewer to a file: the one tyndall render writes.
+// Saves an image of the viewer to the same file that tyndall render writes.
 #pragma once
 #include "base/error.h"
 #include "scene/load_options.h"
@@ -20,7 +20,7 @@ struct SaveJob {
     Quality quality = Quality::preview;
     std::string isa;
     LightUnits light_units = LightUnits::spec;
-    std::vector<InputFile> inputs; // the scene's files as they are now, which saving changes; empty = as it was loaded
+    std::vector<InputFile> inputs; // the current scene files, which saving changes; empty = as loaded
     std::string unsaved;           // edits that the scene's files do not have; noted in the header
 };
 
@@ -31,9 +31,9 @@ struct Saved {
     ExitCode code = ExitCode::ok;
 };
 
-// Renders all samples of the settings, without what pictures before left behind, and writes the file: bit for bit that
-// of tyndall render for the same scene, frame, camera, size, mode, settings and seed, but for `unsaved`. What stands
-// still may be shared with `previous`, when that is of the same scene. Throws Error.
+// Renders all samples of the settings, independent of previous images, and writes the file: bit for bit that of tyndall
+// render for the same scene, frame, camera, size, mode, settings and seed, except for `unsaved`. Static data may be
+// shared with `previous` if it is of the same scene. Throws Error.
 void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool>& cancel,
                   const std::function<void(double)>& progress);
 }

@@ -17,7 +17,7 @@ float median_depth(const Image<float>& depth) {
     return std::max(known[known.size() / 2], 1e-6f);
 }
 
-// What `code` makes of every pixel.
+// An image of `code(x, y)` at every pixel.
 template<class Code> Image<glm::u8vec4> coded(const Layers& layers, const Code& code) {
     Image<glm::u8vec4> codes(layers.size);
     parallel_ranges(layers.size.y, 16, [&](int64_t begin, int64_t end) {
@@ -27,7 +27,7 @@ template<class Code> Image<glm::u8vec4> coded(const Layers& layers, const Code& 
     return codes;
 }
 
-// A number from 0 to 1, or a colour of such numbers, as it is.
+// A value in 0..1, or a color of such values, without exposure or tone mapping.
 glm::u8vec3 plain_code(vec3 value, int x, int y) { return display_code(value, {0, ViewTransform::srgb}, x, y); }
 
 glm::u8vec3 false_color(vec3 color, float gain) {

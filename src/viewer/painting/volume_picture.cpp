@@ -15,13 +15,13 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_cells = 256, max_layers = 128; // of a picture's side, and behind each other
+constexpr int max_cells = 256, max_layers = 128; // along an image's side, and in depth
 constexpr int lanes = 16;
 
-// Names of the two axes across an axis: to the right and upwards.
+// The axes of the image for each axis of view: to the right and up.
 constexpr std::array<ivec2, 3> axes_across{ivec2(2, 1), ivec2(0, 2), ivec2(0, 1)};
 
-// What of a medium is shown: all of it, or what of it the scene reaches to.
+// The shown part of a medium: all of it, or where it is infinite, the extent of the scene.
 Box shown_box(const Medium& medium, const Snapshot& snapshot, const Camera& camera) {
     Box box = medium.world_bounds;
     const Box scene = snapshot.bounds;
@@ -34,7 +34,7 @@ Box shown_box(const Medium& medium, const Snapshot& snapshot, const Camera& came
     return box;
 }
 
-// Cells along an axis of the box: voxels, where there are some.
+// Cells along an axis of the box: voxels, if the medium has any.
 int cells_along(const Medium& medium, const Box& box, int axis, int most) {
     if (medium.density.kind != DensityKind::bricks) return std::min(most, 128);
     const vec3 voxel = medium.density.bricks->voxel_size;
@@ -42,7 +42,7 @@ int cells_along(const Medium& medium, const Box& box, int axis, int most) {
     return std::clamp(static_cast<int>(std::ceil((box.high[axis] - box.low[axis]) / finest)), 1, most);
 }
 
-// Density at the cells of one row: of one layer, or the largest or the mean of all layers.
+// Density at the cells of one row: in one layer, or the maximum or mean over all layers.
 void fill_row(const Medium& medium, const VolumePicture& shown, std::span<const float> layers, int row,
               Image<float>& values) {
     const int axis = shown.question.axis;
@@ -82,7 +82,7 @@ Image<float> density_of(const Medium& medium, VolumePicture& shown) {
             layers.push_back(low + size * (static_cast<float>(i) + 0.5f) / static_cast<float>(count));
     }
 
-    // Cells of equal sides: as many along the longer side as there may be.
+    // Square cells, as many along the longer side as allowed.
     const vec2 sides(shown.box.high[shown.right] - shown.box.low[shown.right],
                      shown.box.high[shown.up] - shown.box.low[shown.up]);
     const int longer = sides.x >= sides.y ? 0 : 1;
@@ -106,7 +106,7 @@ std::vector<std::pair<std::string, std::string>> brick_facts(const BrickPool& br
             {"in memory", bytes_text(static_cast<double>(bricks.bytes()))}};
 }
 
-// Of the file, as tyndall info says.
+// Facts about the file, as in tyndall info.
 std::vector<std::pair<std::string, std::string>> file_facts(const std::filesystem::path& file,
                                                             const std::string& wanted) {
     const VdbInfo info = vdb_info(file);
@@ -115,7 +115,7 @@ std::vector<std::pair<std::string, std::string>> file_facts(const std::filesyste
         if (!wanted.empty() && grid.name != wanted && grid.key != wanted) continue;
         facts.emplace_back("grid", printable(grid.key, 80) + ": " + kind_text(grid));
         for (auto& row : grid_rows(grid)) facts.push_back(std::move(row));
-        if (grid.usable) // the only shape of tree that can be read
+        if (grid.usable) // the only tree configuration that can be read
             facts.emplace_back("tree", "4 levels: root, nodes of 32\u00b3 and 16\u00b3, leaves of 8\u00b3");
     }
     return facts;

@@ -4,8 +4,8 @@
 #include "base/text.h"
 
 namespace tyndall {
-// Parameters: a word in capitals is a name; x, y, z, n, ev, factor and degrees are numbers; X,Y is a point of two; []
-// may be left out; a|b is one of these words.
+// Parameters: a word in capitals is a name; x, y, z, n, ev, factor and degrees are numbers; X,Y is a point; [] marks
+// optional ones; a|b is one of these words.
 const std::vector<VerbInfo>& verbs() {
     static const std::vector<VerbInfo> all{
         {Verb::open, "open", "FILE", "show another scene"},
@@ -106,7 +106,7 @@ Line split(std::string_view text) {
     return line;
 }
 
-// Of numbers that stand for angles, pixels, frames and seconds alike.
+// The limit for angles, pixels, frames and seconds alike.
 constexpr double largest_number = 1e9;
 
 double number(std::string_view text, const std::string& place, std::string_view usage) {
@@ -139,7 +139,7 @@ void add_parameter(Action& action, std::string_view parameter, const std::string
     }
 }
 
-// Of wait: the only verb whose name says what follows.
+// Checks wait, the only verb whose first word determines what follows.
 void check_wait(const Action& action) {
     const std::string& what = action.words[0];
     const bool samples = what == "samples";

@@ -1,4 +1,4 @@
-// What can be done in the viewer, as lines of text: keys, panels and scripts all become these.
+// The actions of the viewer as lines of text, which keys, panels and scripts are all translated to.
 #pragma once
 #include "base/math.h"
 
@@ -70,7 +70,7 @@ enum class Verb {
 struct Action {
     Verb verb = Verb::quit;
     std::vector<std::string> words; // parameters that are names
-    std::vector<double> numbers;    // and those that are numbers, in order
+    std::vector<double> numbers;    // parameters that are numbers, in order
     std::string place;              // "script.txt:3"; empty outside of scripts
 };
 
@@ -80,10 +80,10 @@ struct VerbInfo {
 };
 const std::vector<VerbInfo>& verbs();
 
-// "orbit 30 -5". Words with blanks stand in double quotes. Throws Error (refused) naming `place`.
+// Parses a line such as "orbit 30 -5". Words with spaces go in double quotes. Throws Error (refused) naming `place`.
 Action parse_action(std::string_view line, const std::string& place = {});
 
-// One action a line; what follows a # at a line's beginning or after a blank is a remark. Throws Error (refused) naming
-// file and line.
+// One action per line; a # at the start of a line or after a space begins a comment. Throws Error (refused) naming file
+// and line.
 std::vector<Action> parse_script(std::string_view text, const std::string& file);
 }

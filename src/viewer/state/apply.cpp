@@ -1,4 +1,4 @@
-// What each action does to the state.
+// Dispatches actions to the tables of the verbs.
 #include "viewer/state/verb_actions.h"
 
 #include <map>

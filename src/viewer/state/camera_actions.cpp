@@ -1,4 +1,4 @@
-// Where the camera stands, and how many pixels it has.
+// Actions that move the camera or change the size of the image.
 #include "base/error.h"
 #include "trace/moment.h"
 #include "viewer/state/verb_actions.h"
@@ -47,7 +47,7 @@ void set_size(ViewState& state, const Action& action) {
     if (!scenes_own && !(x >= 1 && y >= 1 && x <= largest_side && y <= largest_side))
         fail(ExitCode::usage, "size", "expected 1 to 16384 pixels on each side, or 0 0 for the scene's");
     state.size = {static_cast<int>(x), static_cast<int>(y)};
-    state.explain.reset(); // pixels are others now
+    state.explain.reset(); // its pixel belongs to the old size
     ++state.revision;
 }
 

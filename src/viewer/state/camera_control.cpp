@@ -7,10 +7,10 @@
 
 namespace tyndall {
 namespace {
-constexpr float steepest = 0.4972f * pi; // above the horizon
-constexpr float nearest = 1e-3f;         // metres to the target
+constexpr float steepest = 0.4972f * pi; // largest elevation
+constexpr float nearest = 1e-3f;         // smallest distance to the target, meters
 
-// The camera's axes after a turn about the world's up and then about its own right, its steepness limited.
+// Rotates the camera's axes about the world's up and then about its own right, with limited elevation.
 Camera rotated(Camera camera, vec2 angle) {
     const float elevation = std::asin(std::clamp(camera.forward.y, -1.0f, 1.0f));
     const float low = std::min(elevation, -steepest), high = std::max(elevation, steepest);
@@ -24,7 +24,7 @@ Camera rotated(Camera camera, vec2 angle) {
     return camera;
 }
 
-// Height of the picture at the target.
+// Height of the view at the target, meters.
 float picture_height(const Viewpoint& view) {
     if (view.camera.ortho_height > 0) return view.camera.ortho_height;
     return 2 * view.distance * std::tan(0.5f * view.camera.vertical_fov);

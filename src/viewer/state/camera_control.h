@@ -1,33 +1,34 @@
-// A camera moved by hand. Pure functions; angles in radians, the world's up is +Y, roll is kept.
+// Interactive camera motion. Pure functions; angles in radians, the world's up is +Y, roll is kept.
 #pragma once
 #include "scene/camera.h"
 
 namespace tyndall {
 struct Scene;
 
-// A camera and how far before it the point lies that it turns around.
+// A camera and the distance to the point it orbits.
 struct Viewpoint {
     Camera camera;
-    float distance = 5; // metres
+    float distance = 5; // meters
 
     vec3 target() const { return camera.position + distance * camera.forward; }
 };
 
-// A camera of the scene with the point it looks at, or with the middle of the scene as far before it as that is.
+// A camera of the scene that orbits the point it looks at, or for cameras of the glTF, a point as far ahead as the
+// scene's center.
 Viewpoint viewpoint_of(const Scene& scene, int camera, double seconds);
 
-// Around the target, as if the scene were turned: x to the right, y upwards. Never over the poles.
+// Orbits the target, as if the scene were turned: x to the right, y upwards. Never over the poles.
 Viewpoint orbited(Viewpoint from, vec2 angle);
 
-// The camera looks elsewhere from where it stands: x to the right, y upwards.
+// Turns the camera in place: x to the right, y upwards.
 Viewpoint turned(Viewpoint from, vec2 angle);
 
-// Aside, in picture heights at the target: the scene follows a hand that moves right and up.
+// Pans by image heights at the target: the scene follows a pointer that moves right and up.
 Viewpoint panned(Viewpoint from, vec2 heights);
 
-// Towards the target or away from it: its distance times a factor above 0.
+// Moves towards the target or away from it: multiplies its distance by a factor above 0.
 Viewpoint dollied(Viewpoint from, float factor);
 
-// Metres to the right, along the world's up and forward.
+// Moves by meters to the right, along the world's up, and forward.
 Viewpoint flown(Viewpoint from, vec3 metres);
 }

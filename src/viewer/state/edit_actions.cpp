@@ -29,7 +29,7 @@ void say_done(ViewState& state, std::string message) {
     state.message = std::move(message), state.message_is_error = false;
 }
 
-// Of a thing in its list: a name that is its own, else its number.
+// How a path names a part in its list: by its name if that is unique, else by its index.
 std::string name_in_path(const Scene& scene, Part part, size_t index) {
     const std::string& name = name_of(scene, part, index);
     const std::string number = std::to_string(index);
@@ -55,7 +55,7 @@ std::string value_text(const Property& property, vec3 value) {
 
 double seconds_of(const ViewState& state) { return moment_of(*state.scene, state.frame).seconds; }
 
-// The exposure of the scene is how a picture is shown, not what it is made of.
+// The scene's exposure changes only how an image is displayed, not the rendering.
 void edit_scene(ViewState& state, std::string_view path, std::string_view value, double drag) {
     SceneSession& session = open_one(state);
     const Edit change = parse_edit(session.scene, path, value, seconds_of(state));
@@ -86,7 +86,7 @@ void save_scene(ViewState& state, const std::filesystem::path& file) {
         save(session);
     } else {
         save_as(session, file);
-        state.stage = std::make_shared<Scene>(session.scene); // knows the new file
+        state.stage = std::make_shared<Scene>(session.scene); // has the new file name
         show_edits(state);
     }
     state.scene_file = session.scene.file, state.file_error.clear();

@@ -1,4 +1,4 @@
-// Editing the scene that is shown: what edits, undo and saving do to the state.
+// Edits the scene that is shown: how edits, undo and saving change the state.
 #pragma once
 #include "viewer/state/view_state.h"
 
@@ -12,23 +12,23 @@ void undo_edit(ViewState& state);
 void redo_edit(ViewState& state);
 void cancel_drag(ViewState& state, double drag);
 
-// Into its own file when none is given. Throws Error.
+// Saves to `file`, or to the scene's own file if that is empty. Throws Error.
 void save_scene(ViewState& state, const std::filesystem::path& file);
 
-// Hands are asked before unsaved edits are lost, scripts only when they close the window, which ends a job as well:
-// `asked` then waits for an answer: save, discard or cancel. Throws Error: usage (of another answer, or without a
-// question), and as saving does, and goes on asking.
+// A user is asked before unsaved edits are lost, a script only before it closes the window, which also ends a running
+// job: `asked` then waits for an answer: save, discard or cancel. answer() throws Error (usage: another word, or no
+// question; or as saving does), and the question remains.
 void open_scene(ViewState& state, const Action& action);
 void reload_scene(ViewState& state); // from its files, in the background; unsaved edits stay
 void close_window(ViewState& state, const Action& action);
 void answer(ViewState& state, const std::string& word);
 
-// The session's scene has changed: pictures have to follow.
+// Call after the session's scene has changed, to update the image.
 void show_edits(ViewState& state);
 
-// The action that selects a thing.
+// The action that selects a part of the scene.
 Action selection_of(const Scene& scene, Thing thing);
 
-// The action that makes an edit: its words name the same thing and the same numbers, to the bit.
+// The action that makes an edit: its words give the same part and, to the bit, the same numbers.
 Action action_of(const Scene& scene, const Edit& edit, uint64_t drag);
 }

@@ -1,10 +1,10 @@
-// What keys do.
+// The keyboard shortcuts.
 #include "modes/mode.h"
 #include "viewer/state/view_state.h"
 
 namespace tyndall {
 namespace {
-constexpr double fly_share = 0.04; // of the distance to the point looked at, for one press
+constexpr double fly_share = 0.04; // of the distance to the target, per key press
 
 Action fly(const ViewState& state, vec3 direction) {
     const vec3 metres = static_cast<float>(fly_share) * viewpoint(state).distance * direction;

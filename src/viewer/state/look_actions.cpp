@@ -1,4 +1,4 @@
-// How pictures are shown, what is asked about them, and which panels are there.
+// Actions on how images are shown, what is explained about them, and the panels.
 #include "base/error.h"
 #include "base/text.h"
 #include "scene/scene.h"
@@ -85,7 +85,7 @@ void show_volume(ViewState& state, const Action& action) {
     ++state.shown_revision;
 }
 
-// What is asked about is shown.
+// Choosing a medium also shows it.
 void set_medium(ViewState& state, const Action& action) {
     std::vector<std::string> names;
     for (const MediumSource& medium : loaded_scene(state).media) names.push_back(medium.name);

@@ -14,7 +14,7 @@ bool is_over(const Action& wait, const ScriptFacts& facts, double since) {
     return facts.now - since >= std::strtod(wait.words[0].c_str(), nullptr);
 }
 
-// Some waits would never end.
+// Refuses waits that would never end.
 void check_end(const Action& wait, const ViewState& state) {
     const std::string& what = wait.words[0];
     if (what == "samples" && wait.numbers[0] > state.max_samples)
@@ -29,7 +29,7 @@ std::optional<Action> next_action(ScriptPlayer& player, const ViewState& state, 
     if (player.finished() || facts.busy || state.loading || (state.playing && state.frames_to_play > 0)) return {};
     const Action& action = player.actions[player.next];
     const bool after_job = action.verb == Verb::render || action.verb == Verb::bake || action.verb == Verb::quit;
-    if (after_job && facts.job) return {}; // one after the other
+    if (after_job && facts.job) return {}; // jobs run one at a time
     if (action.verb == Verb::wait) {
         check_end(action, state);
         if (player.waiting_since < 0) player.waiting_since = facts.now;

@@ -9,10 +9,10 @@
 
 namespace tyndall {
 namespace {
-constexpr double wide = 1e3; // high over low of a range that is cut to what is worth a slider
-constexpr double reach = 16; // times the usual value and below it, on such a slider
+constexpr double wide = 1e3; // ratio of high to low above which a slider shows only part of a range
+constexpr double reach = 16; // factor above and below the usual value on such a slider
 
-// The rows with a prefix that the mode reads.
+// Adds the group of the rows with a prefix that the mode reads.
 void append_group(const Mode& mode, std::string title, std::string_view prefix, std::vector<SettingGroup>& groups) {
     SettingGroup group{std::move(title), {}};
     for (const SettingRow& row : setting_rows())

@@ -1,4 +1,4 @@
-// Settings as the viewer shows them: those that change a mode's picture, in groups, over ranges fit for a hand.
+// Settings as the viewer shows them: those that affect a mode's image, in groups, with slider ranges.
 #pragma once
 #include "modes/settings.h"
 
@@ -10,14 +10,14 @@ struct SettingGroup {
     std::vector<const SettingRow*> rows;
 };
 
-// Groups of a mode: its own settings first, then style, scattering orders, the light's terms and pixels.
+// Groups of a mode: its own settings first, then the light's terms, multiple scattering, style and pixels.
 std::vector<SettingGroup> setting_groups(const Mode& mode);
 
-// A row by name; throws Error (usage) naming the nearest one.
+// The row with a name. Throws Error (usage) that suggests the nearest one.
 const SettingRow& find_row(std::string_view name);
 
-// The part of a number's range worth a slider: around the usual value where the whole range spans many powers of ten,
-// and always with the value itself in it.
+// The part of a setting's range that its slider covers: around the usual value if the whole range spans many powers of
+// ten, and always including the value itself.
 struct SliderRange {
     double low = 0, high = 1;
     bool logarithmic = false;

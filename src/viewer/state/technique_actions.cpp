@@ -1,4 +1,4 @@
-// Techniques and their settings.
+// Actions on techniques and their settings.
 #include "base/error.h"
 #include "modes/mode.h"
 #include "viewer/painting/reference_picture.h"

@@ -1,4 +1,4 @@
-// Frames, playing, and frames that are missing.
+// Actions on frames, playback, and missing frames.
 #include "scene/scene.h"
 #include "viewer/state/verb_actions.h"
 

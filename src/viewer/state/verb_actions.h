@@ -1,4 +1,4 @@
-// What verbs do to the state, by what they are about: one file for each table.
+// Tables of the verbs and the functions that apply them to the state, one file for each topic.
 #pragma once
 #include "viewer/state/view_state.h"
 
@@ -11,7 +11,7 @@ struct VerbAction {
 };
 
 std::span<const VerbAction> technique_actions(); // and settings
-std::span<const VerbAction> look_actions();      // how a picture is shown, what is asked about it, panels
+std::span<const VerbAction> look_actions();      // how an image is shown, what is explained about it, panels
 std::span<const VerbAction> camera_actions();
 std::span<const VerbAction> time_actions();
 std::span<const VerbAction> scene_actions(); // opening, editing, saving, closing

@@ -23,7 +23,7 @@ std::string selected_name(const ViewState& state) {
     return is_there(state) ? name_of(*state.scene, state.selected.part, state.selected.index) : "";
 }
 
-// What was selected may stand elsewhere in the list now.
+// Selects by name again: the index may have changed.
 void select_by_name(ViewState& state, const std::string& name) {
     for (size_t i = 0; i < count_of(*state.scene, state.selected.part); ++i) {
         if (name_of(*state.scene, state.selected.part, i) != name) continue;

@@ -15,7 +15,7 @@ LeafSummary summary_of(const Leaf& leaf) {
     for (const uint64_t word : filled) rows |= word;
     if (rows == 0) return summary;
 
-    // Part d holds the layers that a brick on the lower side shares: x, y, z 0 for its bits 4, 2, 1.
+    // Part d holds the voxels shared with the lower neighbor brick -d: only layer 0 in x, y, z for bits 4, 2, 1.
     constexpr uint64_t first_y = 0xff, first_z = 0x0101010101010101u;
     for (int d = 0; d < 8; ++d) {
         const uint64_t shared = (d & 2 ? first_y : ~uint64_t{0}) & (d & 1 ? first_z : ~uint64_t{0});
@@ -25,7 +25,7 @@ LeafSummary summary_of(const Leaf& leaf) {
     ivec3 low, high;
     bounds_of(filled, low, high);
     summary.box = {leaf.origin + low, leaf.origin + high};
-    std::array<float, 8> sums{}; // of each z
+    std::array<float, 8> sums{}; // per z
     for (int row = 0; row < 64; ++row)
         for (int z = 0; z < 8; ++z) {
             const float value = leaf.values[row * 8 + z];
@@ -35,7 +35,7 @@ LeafSummary summary_of(const Leaf& leaf) {
     return summary;
 }
 
-// Grows the box of all fog and its mass by leaves and tiles.
+// Accumulates the box and the mass of all leaves and tiles.
 void sum_up(const SparseVolume& volume, Sources& sources) {
     for (const LeafSummary& summary : sources.summaries)
         if (summary.parts) sources.box.grow(summary.box), sources.mass += summary.mass;
@@ -48,7 +48,7 @@ void sum_up(const SparseVolume& volume, Sources& sources) {
     }
 }
 
-// A tile covers most cells whole; where it covers one in part, a leaf is made for that cell.
+// Marks the cells that a tile covers completely, and fills a partial leaf in every cell it covers only in part.
 void add_tile(const BrickPool& pool, const Tile& tile, int32_t tile_index, Sources& sources) {
     const ivec3 low = tile.low - pool.low, high = tile.high - pool.low;
     const ivec3 first = low / 8, last = high / 8;

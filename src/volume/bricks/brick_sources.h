@@ -1,4 +1,4 @@
-// What bricks are made of, cell by cell: leaves, and tiles that cover a cell whole. Internal to make_bricks().
+// Source data of each brick cell: leaves, and tiles that cover a whole cell. Internal to make_bricks().
 #pragma once
 #include "volume/bricks/bricks.h"
 
@@ -10,28 +10,29 @@ struct VoxelBox {
     void grow(const VoxelBox& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
 };
 
-// What of a leaf is not 0. Bit d of `parts`: some voxel that the brick at -d (d = 4·dx + 2·dy + dz) has as a corner.
+// The nonzero part of a leaf. Bit d of `parts` is set if a nonzero voxel is a corner of the brick at offset -(dx, dy,
+// dz), where d = 4·dx + 2·dy + dz.
 struct LeafSummary {
     VoxelBox box;
     uint8_t parts = 0;
     double mass = 0; // sum of the voxels
 };
 
-// Everything a brick can be made of, by cell of 8³ voxels: n > 0 = leaf n-1, n < 0 = tile -n-1 covers it, 0 = nothing.
+// The sources of all bricks. `cells` holds, for each cell of 8³ voxels: n > 0 = leaf n-1, n < 0 = tile -n-1, 0 = empty.
 struct Sources {
     std::vector<const Leaf*> leaves;
     std::vector<LeafSummary> summaries;
-    std::vector<Leaf> partial;   // made from tiles that cover a cell in part
+    std::vector<Leaf> partial;   // from tiles that cover a cell only in part
     std::vector<uint16_t> tiles; // values as halves
     std::vector<int32_t> cells;
-    VoxelBox box;    // of the voxels that are not 0
+    VoxelBox box;    // around the nonzero voxels
     double mass = 0; // sum of all voxels
 };
 
-// Summaries of the leaves and the box of all fog; the cells are still to be filled.
+// Summarizes the leaves and the box of all fog; `cells` stays empty.
 Sources make_sources(const SparseVolume& volume);
 
-// Fills `cells` on the pool's grid of bricks.
+// Fills `cells` on the pool's brick grid.
 void fill_cells(const BrickPool& pool, const SparseVolume& volume, Sources& sources);
 
 inline int64_t cell_count(const BrickPool& pool) { return int64_t{pool.size.x} * pool.size.y * pool.size.z; }

@@ -1,12 +1,12 @@
-// Rays through grids, cell by cell (Amanatides & Woo 1987). The state is whole cells and the distances to their
-// borders; a cell is never worked out anew from a point, so no cell is missed or met twice.
+// Grid traversal along rays (Amanatides & Woo 1987). The state is an integer cell and the distances to its faces; cells
+// are never recomputed from a point, so none is skipped or visited twice.
 #pragma once
 #include "volume/bricks/bricks.h"
 
 #include <type_traits>
 
 namespace tyndall {
-// origin + t·direction in local coordinates, t in world metres: the direction has any length.
+// origin + t·direction in local coordinates, with t in world meters, so the direction is not normalized.
 struct LocalRay {
     dvec3 origin{0}, direction{0};
 };
@@ -22,7 +22,7 @@ inline LocalRay local_ray(const mat4& world_to_local, const Ray& ray) {
     return {dvec3(matrix * glm::dvec4(ray.origin, 1)), glm::dmat3(matrix) * dvec3(ray.direction)};
 }
 
-// The part of the stretch inside the box. Directions may have any length, zeros included.
+// The part of `range` inside the box. The direction may have any length, and its components may be zero.
 inline Interval<double> clip(const Box& box, const LocalRay& ray, Interval<double> range) {
     for (int axis = 0; axis < 3; ++axis) {
         const double low = box.low[axis], high = box.high[axis];
@@ -38,7 +38,7 @@ inline Interval<double> clip(const Box& box, const LocalRay& ray, Interval<doubl
     return range.empty() ? Interval<double>{} : range;
 }
 
-// Calls a visitor; one that returns nothing always goes on.
+// Calls a visitor and returns whether to continue; a void visitor always continues.
 template<class Visit, class... Arguments> bool goes_on(const Visit& visit, Arguments... arguments) {
     if constexpr (std::is_void_v<std::invoke_result_t<Visit, Arguments...>>)
         return visit(arguments...), true;
@@ -46,12 +46,12 @@ template<class Visit, class... Arguments> bool goes_on(const Visit& visit, Argum
         return visit(arguments...);
 }
 
-// Calls visit(cell, low, high) for every cell first..last of edge length `edge` the ray crosses on the stretch, in
-// order, until it returns false. The stretch has to lie inside these cells up to rounding.
+// Calls visit(cell, low, high) in order for every cell in first..last, of edge length `edge`, that the ray crosses on
+// `range`, until it returns false. `range` must lie inside these cells up to rounding.
 template<class Visit>
 void walk_cells(const LocalRay& ray, Interval<double> range, double edge, ivec3 first, ivec3 last, const Visit& visit) {
     ivec3 cell, step;
-    dvec3 border, across; // t at the next border of each axis, t from border to border
+    dvec3 border, across; // t at the next face along each axis, t between faces
     for (int axis = 0; axis < 3; ++axis) {
         const double at = ray.origin[axis] + range.low * ray.direction[axis], direction = ray.direction[axis];
         cell[axis] = std::clamp(static_cast<int>(std::floor(at / edge)), first[axis], last[axis]);
@@ -68,7 +68,7 @@ void walk_cells(const LocalRay& ray, Interval<double> range, double edge, ivec3 
         }
         if (next >= range.high) return;
 
-        // Over every border that lies here; through an edge or a corner several at once.
+        // Step across every face at this t: several at once through an edge or corner.
         for (int axis = 0; axis < 3; ++axis) {
             if (border[axis] != next) continue;
             cell[axis] += step[axis], border[axis] += across[axis];
@@ -77,8 +77,7 @@ void walk_cells(const LocalRay& ray, Interval<double> range, double edge, ivec3 
     }
 }
 
-// Calls visit(cell of the index, low, high) for every brick that is not empty, in order, until it returns
-// false.
+// Calls visit(brick, index cell, low, high) in order for every nonempty brick until it returns false.
 template<class Visit>
 void walk_bricks(const BrickPool& pool, const LocalRay& ray, Interval<double> range, const Visit& visit) {
     if (pool.empty()) return;

@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-// The smallest world box around a local box, rounded outwards to floats.
+// The smallest world box around a local box, rounded outward to floats.
 Box image(const dmat4& local_to_world, const Box& box) {
     dvec3 low(infinity), high(-infinity);
     for (int corner = 0; corner < 8; ++corner) {
@@ -47,7 +47,7 @@ void place(BrickPool& pool, const dmat4& index_to_world) {
         pool.voxel_size[axis] = static_cast<float>(glm::length(dvec3(index_to_world[axis])));
     if (pool.empty()) return;
 
-    // The anchor is a point that floats hold; where it lies in the fog is worked out in double.
+    // The anchor is a world point exactly representable in floats; its local coordinates are computed in double.
     pool.bounds = image(local_to_world, pool.local_bounds);
     pool.anchor = vec3(local_to_world * glm::dvec4(pool.local_bounds.center(), 1));
     pool.anchor_index = vec3(world_to_local * glm::dvec4(pool.anchor, 1));

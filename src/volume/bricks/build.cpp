@@ -1,4 +1,4 @@
-// From leaves and tiles to bricks: find what every brick is made of, pack the ones that differ inside, drop the rest.
+// Builds bricks from leaves and tiles: finds each brick's sources, packs the nonuniform bricks and drops the rest.
 #include "base/error.h"
 #include "base/parallel.h"
 #include "volume/bricks/brick_sources.h"
@@ -13,20 +13,20 @@
 namespace tyndall {
 namespace {
 constexpr int64_t largest_index = int64_t{256} << 20; // bytes
-constexpr int64_t longest_axis = 1 << 20;             // bricks: floats still tell its voxels apart
+constexpr int64_t longest_axis = 1 << 20;             // bricks; floats can still distinguish the voxels
 constexpr int64_t farthest_voxel = int64_t{1} << 30;
 
-// The eight cells whose voxels are corners of one brick, d = 4·dx + 2·dy + dz.
+// The eight cells that contribute voxels to one brick, d = 4·dx + 2·dy + dz.
 using Corners = std::array<int32_t, 8>;
 
-// What a pool's arrays grow in.
+// The arrays of a pool during construction.
 struct BrickArrays {
     std::vector<int32_t> index;
     std::vector<uint16_t> values;
     std::vector<float> constants, minimum, maximum;
 };
 
-// Places the grid of bricks: one layer of zeros before the first voxel and one behind the last.
+// Sizes the brick grid with one layer of zeros before the first voxel and one after the last.
 void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
     int64_t cells = 1;
     for (int axis = 0; axis < 3; ++axis) {
@@ -57,7 +57,7 @@ Corners corners_of(const BrickPool& pool, const Sources& sources, ivec3 cell) {
     return corners;
 }
 
-// 0 = empty, 1 = has to be packed, -h = constant of the half h.
+// 0 = empty, 1 = must be packed, -h = constant with half value h.
 int32_t kind_of(const Corners& corners, const Sources& sources) {
     const uint16_t tile = corners[0] < 0 ? sources.tiles[-corners[0] - 1] : 0;
     bool empty = true, constant = tile != 0;
@@ -69,7 +69,7 @@ int32_t kind_of(const Corners& corners, const Sources& sources) {
     return empty ? 0 : constant ? -int32_t{tile} : 1;
 }
 
-// Marks every cell of the index with its kind and lists the ones to pack, in order.
+// Marks every index cell with its kind and lists the bricks to pack, in order.
 std::vector<ivec3> listed_bricks(const BrickPool& pool, const Sources& sources, BrickArrays& arrays) {
     arrays.index.assign(static_cast<size_t>(cell_count(pool)), 0);
     std::vector<std::vector<ivec3>> slabs(pool.size.x);
@@ -87,7 +87,7 @@ std::vector<ivec3> listed_bricks(const BrickPool& pool, const Sources& sources, 
     return list;
 }
 
-// Writes the 9³ corner values of a brick.
+// Writes the 9³ values of a brick and returns their range.
 HalfRange pack(const Corners& corners, const Sources& sources, uint16_t* values) {
     static constexpr std::array<float, 8> nothing{};
     float buffer[729];
@@ -117,7 +117,7 @@ std::vector<HalfRange> packed_bricks(const std::string& name, const std::vector<
         fail(ExitCode::out_of_memory, name,
              "its bricks take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) + " MB, this machine has " +
                  std::to_string(static_cast<int64_t>(memory / 1e6)) + " MB. Use larger voxels");
-    // Large pages, where there are any, take a fraction of the time that small ones need to be touched first.
+    // Huge pages, if available, take a fraction of the time of small pages on first touch.
     arrays.values.reserve(list.size() * brick_stride);
     constexpr uintptr_t page = uintptr_t{2} << 20;
     const auto room = reinterpret_cast<uintptr_t>(arrays.values.data());
@@ -132,7 +132,7 @@ std::vector<HalfRange> packed_bricks(const std::string& name, const std::vector<
     return packed;
 }
 
-// Turns the marks in the index into brick and constant numbers, closing the gaps that uniform bricks leave.
+// Turns the marks in the index into brick and constant ids, and compacts the values to remove uniform bricks.
 void finish_index(const std::vector<HalfRange>& packed, BrickArrays arrays, BrickPool& pool) {
     arrays.minimum.assign(arrays.index.size(), 0);
     arrays.maximum = arrays.minimum;
@@ -161,7 +161,7 @@ void finish_index(const std::vector<HalfRange>& packed, BrickArrays arrays, Bric
     }
     arrays.values.resize(bricks * brick_stride);
     if (arrays.values.size() < arrays.values.capacity() / 4 * 3) arrays.values.shrink_to_fit();
-    const ivec3 reach = (ivec3(pool.local_bounds.high) - 1) / 8; // the last bricks that fog can be in
+    const ivec3 reach = (ivec3(pool.local_bounds.high) - 1) / 8; // the last bricks that can hold fog
     const size_t bricks_within = static_cast<size_t>(reach.x + 1) * (reach.y + 1) * (reach.z + 1);
     pool.crowded = bricks_within - filled <= bricks_within / 16;
     pool.mean_in_bricks = static_cast<float>(pool.mass / (512.0 * static_cast<double>(filled)));

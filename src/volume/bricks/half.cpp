@@ -9,7 +9,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Rounding keeps the order, so the range of the halves is that of the floats.
+// Rounding is monotonic, so the range of the halves is the rounded range of the floats.
 HalfRange halves_kernel(const float* from, size_t count, uint16_t* to) {
     using HalfTag = hn::Rebind<hwy::float16_t, FloatTag>;
     using BitsTag = hn::Rebind<uint16_t, FloatTag>;
@@ -18,7 +18,7 @@ HalfRange halves_kernel(const float* from, size_t count, uint16_t* to) {
     size_t i = 0;
     if (HWY_TARGET != HWY_SCALAR) {
         for (; i + lane_step <= count; i += lane_step) {
-            // Max returns its second operand for not-a-number.
+            // Max returns its second operand for NaN.
             const auto value = hn::Min(hn::Max(hn::LoadU(FloatTag(), from + i), zero), most);
             low = hn::Min(low, value), high = hn::Max(high, value);
             hn::StoreU(hn::BitCast(BitsTag(), hn::DemoteTo(HalfTag(), value)), BitsTag(), to + i);

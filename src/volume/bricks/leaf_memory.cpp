@@ -13,7 +13,7 @@ std::align_val_t alignment(size_t bytes) { return std::align_val_t{bytes < large
 
 void* allocate_large(size_t bytes) {
     void* memory = ::operator new(bytes, alignment(bytes));
-    if (bytes >= large_page) madvise(memory, bytes & ~(large_page - 1), MADV_HUGEPAGE); // a wish: small pages do too
+    if (bytes >= large_page) madvise(memory, bytes & ~(large_page - 1), MADV_HUGEPAGE); // best effort
     return memory;
 }
 

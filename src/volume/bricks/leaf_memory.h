@@ -1,11 +1,11 @@
-// Memory for leaves by the million: in large pages, whose first touch costs a fraction of that of small ones, and not
-// cleared where it is filled right away.
+// Memory for millions of leaves: in huge pages, whose first touch costs a fraction of that of small pages, and left
+// uninitialized if it is filled right away.
 #pragma once
 #include <cstddef>
 #include <memory>
 
 namespace tyndall {
-// Aligned to large pages when it spans some; throws std::bad_alloc. Its bytes are not cleared.
+// Uninitialized memory, aligned to huge pages if at least one in size. Throws std::bad_alloc.
 void* allocate_large(size_t bytes);
 void free_large(void* memory, size_t bytes);
 
@@ -16,7 +16,7 @@ struct FreeLarge {
 using LargeBytes = std::unique_ptr<char, FreeLarge>;
 inline LargeBytes large_bytes(size_t bytes) { return {static_cast<char*>(allocate_large(bytes)), FreeLarge{bytes}}; }
 
-// leaves.emplace_back(Unfilled{}) makes room for a leaf whose every byte is written later.
+// leaves.emplace_back(Unfilled{}) adds an uninitialized leaf; every byte must be written later.
 struct Unfilled {};
 
 template<class T> struct LeafMemory {

@@ -1,5 +1,5 @@
-// A fog grid as plain data: what a VDB file holds, free of the library that reads it.
-// Index space: the centre of voxel (i,j,k) is at (i,j,k). Values are densities, 0..1 by custom.
+// A fog grid as plain data: the contents of a VDB file, independent of the library that reads it.
+// Index space: the center of voxel (i,j,k) is at (i,j,k). Values are densities, 0..1 by convention.
 #pragma once
 #include "base/math.h"
 #include "volume/bricks/leaf_memory.h"
@@ -11,7 +11,7 @@
 #include <vector>
 
 namespace tyndall {
-// 8×8×8 voxels, z fastest: value of origin + (x,y,z) at [x·64 + y·8 + z]. `origin` is a multiple of 8.
+// 8×8×8 voxels, z fastest: the value at origin + (x,y,z) is at [x·64 + y·8 + z]. `origin` is a multiple of 8.
 struct Leaf {
     ivec3 origin{0};
     std::array<float, 512> values{};
@@ -19,7 +19,7 @@ struct Leaf {
 
 using Leaves = std::vector<Leaf, LeafMemory<Leaf>>;
 
-// A box of voxels low..high (both included) of one value.
+// A box of voxels low..high (inclusive) with one value.
 struct Tile {
     ivec3 low{0}, high{0};
     float value = 0;
@@ -30,7 +30,7 @@ struct SparseVolume {
     dmat4 index_to_world{1};
     Leaves leaves;                        // no two share an origin
     std::vector<Tile> tiles;              // disjoint from the leaves and each other
-    ivec3 active_low{0}, active_high{-1}; // box of the active voxels, both included; high < low = empty
+    ivec3 active_low{0}, active_high{-1}; // box of the active voxels, inclusive; high < low = empty
     std::vector<std::pair<std::string, std::string>> metadata;
 
     bool empty() const { return active_high.x < active_low.x; }

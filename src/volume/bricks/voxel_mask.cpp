@@ -15,7 +15,7 @@ void mask_kernel(const float* values, float threshold, uint64_t* words) {
     for (size_t w = 0; w < 8; ++w) {
         uint64_t word = 0;
         for (size_t i = 0; i < 64; i += lane_step) {
-            uint8_t bytes[8] = {}; // Highway may write eight
+            uint8_t bytes[8] = {}; // StoreMaskBits may write 8 bytes
             hn::StoreMaskBits(FloatTag(), hn::Gt(hn::LoadU(FloatTag(), values + w * 64 + i), bound), bytes);
             Bits bits;
             std::memcpy(&bits, bytes, sizeof bits);
@@ -39,7 +39,7 @@ VoxelMask voxels_above(std::span<const float, 512> values, float threshold) {
 void bounds_of(const VoxelMask& mask, ivec3& low, ivec3& high) {
     uint64_t rows = 0; // bit y·8 + z
     for (const uint64_t word : mask) rows |= word;
-    std::array<uint32_t, 3> used{}; // a bit for every layer across x, y, z
+    std::array<uint32_t, 3> used{}; // one bit per layer along x, y, z
     for (uint32_t i = 0; i < 8; ++i) {
         const uint32_t row = rows >> (8 * i) & 0xff;
         used[0] |= uint32_t{mask[i] != 0} << i, used[1] |= uint32_t{row != 0} << i, used[2] |= row;

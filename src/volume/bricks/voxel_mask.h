@@ -1,4 +1,4 @@
-// A bit for each voxel of a leaf.
+// One bit for each voxel of a leaf.
 #pragma once
 #include "base/math.h"
 
@@ -11,10 +11,10 @@
 namespace tyndall {
 using VoxelMask = std::array<uint64_t, 8>; // bit x·64 + y·8 + z
 
-// The voxels whose value is above a threshold; not-a-number never is.
+// The voxels whose value exceeds a threshold; NaN never does.
 VoxelMask voxels_above(std::span<const float, 512> values, float threshold);
 
-// Corners, 0..7, of the box around the voxels of a mask that holds some.
+// Bounding box (inclusive, 0..7) of the voxels in a nonempty mask.
 void bounds_of(const VoxelMask& mask, ivec3& low, ivec3& high);
 
 inline size_t count_voxels(const VoxelMask& mask) {

@@ -12,9 +12,9 @@ namespace {
 // CODATA 2018, exact.
 constexpr double planck_constant = 6.62607015e-34, light_speed = 299792458, boltzmann_constant = 1.380649e-23;
 constexpr double lumens_per_watt = 683;
-constexpr double wien = 2.897771955e-3; // m K: wavelength of the maximum × temperature
+constexpr double wien = 2.897771955e-3; // m K: peak wavelength × temperature
 
-// ∫ of a spectrum times the observer over wavelengths in nanometres.
+// ∫ of a spectrum times the CIE matching functions over wavelengths in nanometers.
 template<class Spectrum> dvec3 observed(const Spectrum& spectrum) {
     dvec3 sum(0);
     for (size_t i = 0; i < std::size(cie_1931); ++i)
@@ -25,7 +25,7 @@ template<class Spectrum> dvec3 observed(const Spectrum& spectrum) {
 
 double luminance_of(dvec3 rgb) { return dot(rgb, dvec3(0.2126, 0.7152, 0.0722)); }
 
-// Planck's law over its maximum: numbers of ordinary size at any temperature.
+// XYZ of Planck's law normalized to its maximum, which keeps values in range at any temperature.
 dvec3 relative_xyz(double kelvin) {
     const double highest = planck_radiance(wien / kelvin, kelvin);
     return observed([&](double wavelength) { return planck_radiance(wavelength, kelvin) / highest; });

@@ -1,4 +1,4 @@
-// Colour matching functions of the CIE 1931 standard observer (CIE 018, 2 degrees): x, y and z every 5 nm from 380 to
+// Color matching functions of the CIE 1931 standard observer (CIE 018, 2 degrees): x, y and z every 5 nm from 380 to
 // 780.
 #pragma once
 

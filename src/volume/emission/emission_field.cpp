@@ -5,7 +5,7 @@
 
 namespace tyndall {
 namespace {
-// A pool that stands for several channels is sampled once.
+// Samples three channels; a pool shared by all of them is sampled once.
 vec3 sampled(const std::array<std::shared_ptr<const BrickPool>, 3>& pools, vec3 point) {
     const float first = sample_density(*pools[0], point);
     if (pools[1] == pools[0]) return vec3(first);

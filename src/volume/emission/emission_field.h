@@ -1,4 +1,4 @@
-// Fog whose emission or albedo differs from point to point: functions of grids, sampled where they are asked for.
+// Spatially varying emission and albedo, evaluated from grids at a point.
 #pragma once
 #include "base/math.h"
 
@@ -9,26 +9,25 @@ namespace tyndall {
 struct BrickPool;
 class BlackbodyTable;
 
-// Factors on a medium's albedo. Between voxels that have a colour it is interpolated; where none is near it is 1.
+// A spatially varying factor on a medium's albedo: interpolated between voxels that have a color, 1 elsewhere.
 struct AlbedoField {
-    std::array<std::shared_ptr<const BrickPool>, 3> color; // times `there`; the same pool thrice for a grey grid
-    std::shared_ptr<const BrickPool> there;                // 1 at voxels that have a colour
-    float spread = 0; // share of scattered light by which colours differ from their mean, which Optics::albedo holds
+    std::array<std::shared_ptr<const BrickPool>, 3> color; // times `there`; one pool three times for a gray grid
+    std::shared_ptr<const BrickPool> there;                // 1 at voxels that have a color
+    float spread = 0; // mean deviation of the factor from its mean, as a share of the scattered light
 };
 vec3 albedo_factor(const AlbedoField& field, vec3 point);
 
-// What fog emits per metre whatever its density, before Emission::scale: a colour × `strength` × `absorber` × what
-// `albedo` leaves. Of its medium the bricks hold the luminance in proportion: where to look, and how bright.
+// Emission per meter, independent of the medium's density and before Emission::scale: color × `strength` × `absorber` ×
+// (1 - albedo). The bricks of the medium itself hold relative luminance for finding and importance-sampling the light.
 struct EmissionField {
-    std::shared_ptr<const BlackbodyTable> table;            // gives the colour of the kelvin in source[0]; null: ...
-    std::array<std::shared_ptr<const BrickPool>, 3> source; // ... red, green and blue; one pool thrice for a grey grid
+    std::shared_ptr<const BlackbodyTable> table;            // maps kelvin in source[0] to a color; null: ...
+    std::array<std::shared_ptr<const BrickPool>, 3> source; // ... red, green, blue; one pool three times for gray
     std::shared_ptr<const BrickPool> strength;              // flame; null = 1
-    std::shared_ptr<const BrickPool> absorber;              // density of the fog that emits as it absorbs; null = 1
-    std::shared_ptr<const AlbedoField>
-        albedo;          // of that fog, whose share of the light is not emitted; null = in the scale
-    vec3 base_albedo{0}; // that the field's factors are of
-    float spread = 0;    // share of the light by which colours differ from their mean, which Emission::radiance holds
-    float out_of_gamut = 0; // share of the light that Rec.709 cannot show as red as it is
+    std::shared_ptr<const BrickPool> absorber;              // density of fog that emits as it absorbs; null = 1
+    std::shared_ptr<const AlbedoField> albedo; // of that fog, which emits only 1 - albedo; null = in the scale
+    vec3 base_albedo{0};                       // that the factors of `albedo` multiply
+    float spread = 0;                          // mean deviation of the color from its mean, as a share of the light
+    float out_of_gamut = 0;                    // share of the light from temperatures too red for the Rec.709 gamut
 };
 vec3 emission_at(const EmissionField& field, vec3 point);
 }

@@ -1,4 +1,4 @@
-// Emission and albedo at sixteen points, inside kernels compiled per instruction set (base/simd/simd.h says how).
+// Emission and albedo at sixteen points, for kernels compiled per instruction set (see base/simd/simd.h).
 #if defined(TYNDALL_VOLUME_EMISSION_EMISSION_FIELD_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_EMISSION_EMISSION_FIELD_SIMD_H
 #undef TYNDALL_VOLUME_EMISSION_EMISSION_FIELD_SIMD_H
@@ -19,7 +19,7 @@ HWY_INLINE Vec3s sampled16(const std::array<std::shared_ptr<const BrickPool>, 3>
     return {first, brick_density(*pools[1], point), brick_density(*pools[2], point)};
 }
 
-// As BlackbodyTable::at().
+// SIMD version of BlackbodyTable::at().
 HWY_INLINE Vec3s blackbody16(const BlackbodyTable& table, const Floats& kelvin) {
     const Floats inside = max(min(kelvin, BlackbodyTable::highest), BlackbodyTable::lowest);
     Ints bits, entry;
@@ -38,7 +38,7 @@ HWY_INLINE Vec3s blackbody16(const BlackbodyTable& table, const Floats& kelvin) 
     return {channel(0), channel(1), channel(2)};
 }
 
-// As albedo_factor().
+// SIMD version of albedo_factor().
 HWY_NOINLINE inline Vec3s albedo_factor16(const AlbedoField& field, const Vec3s& point) {
     const Floats there = brick_density(*field.there, point);
     const Mask16 some = there > 0.0f;
@@ -48,13 +48,13 @@ HWY_NOINLINE inline Vec3s albedo_factor16(const AlbedoField& field, const Vec3s&
     return {channel(color.x), channel(color.y), channel(color.z)};
 }
 
-// As albedo_at() of volume/medium.h.
+// SIMD version of albedo_at() (volume/medium.h).
 HWY_INLINE Vec3s albedo16(const Optics& optics, const Vec3s& point) {
     if (!optics.albedo_field) return splat(optics.albedo);
     return splat(optics.base_albedo) * albedo_factor16(*optics.albedo_field, point);
 }
 
-// As emission_at() of fields, times the medium's scale.
+// SIMD version of emission_at() for fields, times the medium's scale.
 HWY_NOINLINE inline Vec3s emission16(const Emission& emission, const Vec3s& point) {
     const EmissionField& field = *emission.field;
     Vec3s rgb = field.table ? blackbody16(*field.table, brick_density(*field.source[0], point))

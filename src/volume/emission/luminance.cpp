@@ -15,7 +15,7 @@ namespace {
 // Sums over voxels.
 struct LightSums {
     dvec3 light{0};
-    double luminance = 0, of_voxels = 0; // of_voxels: the luminance of their middles
+    double luminance = 0, of_voxels = 0; // of_voxels: luminance at voxel centers
     double out_of_gamut = 0, deviation = 0;
 
     void add(const LightSums& other) {
@@ -25,7 +25,7 @@ struct LightSums {
     }
 };
 
-// Lower corners of the bricks of a pool that hold something, in index space.
+// Appends the lower corners of a pool's nonempty bricks, in index space.
 void append_corners(const BrickPool& pool, std::vector<ivec3>& corners) {
     size_t at = 0;
     for (int x = 0; x < pool.size.x; ++x)
@@ -45,7 +45,7 @@ std::vector<ivec3> corners_of(const EmissionField& field) {
     return corners;
 }
 
-// A leaf takes 2 KB where its brick may have taken nothing.
+// A leaf takes 2 KB even where its brick took almost nothing.
 void check_room(size_t leaves, const std::string& name) {
     const double bytes = static_cast<double>(leaves) * sizeof(Leaf);
     const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
@@ -62,14 +62,14 @@ template<class Visit> void visit_voxels(ivec3 corner, const dmat4& index_to_worl
     }
 }
 
-// A place in the voxel around a point, spread over neighbours (R3 sequence: Roberts 2018): what is emitted between
-// voxels is no mean of theirs.
+// A quasirandom point in the voxel around `point` (R3 sequence: Roberts 2018): emission is nonlinear between voxels, so
+// voxel centers alone would bias the sums.
 vec3 spread_in_voxel(vec3 point, int v, const dmat4& index_to_world) {
     const dvec3 place = glm::fract(dvec3(0.8191725133961645, 0.6710436067037893, 0.5497004779019703) * double(v)) - 0.5;
     return point + vec3(glm::dmat3(index_to_world) * place);
 }
 
-// The luminance of a leaf's voxels, and sums over their space.
+// Fills a leaf with the luminance at its voxels and returns sums over their volume.
 LightSums fill_leaf(const EmissionField& field, const dmat4& index_to_world, Leaf& leaf) {
     const auto limit = static_cast<float>(field.table ? lowest_in_gamut() : 0);
     LightSums sums;
@@ -92,7 +92,7 @@ double deviation_in(const EmissionField& field, const dmat4& index_to_world, con
     return sum;
 }
 
-// Calls body(i) for each of many in parallel and adds up what it returns, in order.
+// Calls body(i) for 0 <= i < count in parallel and adds up the results in order.
 template<class Body> LightSums summed(size_t count, const Body& body) {
     std::vector<LightSums> parts(count);
     parallel_ranges(static_cast<int64_t>(count), 4, [&](int64_t begin, int64_t end) {
@@ -105,12 +105,12 @@ template<class Body> LightSums summed(size_t count, const Body& body) {
 
 double sum_of(dvec3 v) { return v.x + v.y + v.z; }
 
-// Whether nothing but one grid decides what is emitted: then bricks of one value emit evenly.
+// True if a single grid determines the emission, so that constant bricks emit uniformly.
 bool has_one_grid(const EmissionField& field) {
     return (field.table || field.source[1] == field.source[0]) && !field.strength && !field.absorber && !field.albedo;
 }
 
-// Takes the bricks of one value out of the corners: as tiles, neighbours along z as one.
+// Moves constant bricks from `corners` to `tiles`, merging neighbors along z.
 LightSums take_even_bricks(const EmissionField& field, const dmat4& index_to_world, std::vector<ivec3>& corners,
                            std::vector<Tile>& tiles) {
     LightSums sums;
@@ -137,7 +137,7 @@ LightSums take_even_bricks(const EmissionField& field, const dmat4& index_to_wor
     return sums;
 }
 
-// As deviation_in().
+// deviation_in() for a tile.
 double deviation_of(const EmissionField& field, const dmat4& index_to_world, const Tile& tile, dvec3 color) {
     const dvec3 light(emission_at(field, vec3(index_to_world * glm::dvec4(dvec3(tile.low) + 4.0, 1))));
     const dvec3 size(tile.high - tile.low + 1);

@@ -1,4 +1,4 @@
-// What grids say of light, voxel by voxel: how bright and of what color on the whole.
+// Per-voxel luminance and mean color of grids that emit or color light.
 #pragma once
 #include "volume/emission/emission_field.h"
 
@@ -6,22 +6,23 @@
 #include <string>
 
 namespace tyndall {
-// Bricks and where their index space lies.
+// Bricks with their index-to-world transform.
 struct PlacedBricks {
     std::shared_ptr<const BrickPool> bricks; // null = none
     dmat4 index_to_world{1};
 };
 
 struct LuminanceBricks {
-    std::shared_ptr<const BrickPool> bricks; // luminance of what is emitted, its maximum 1; null = nothing is
-    vec3 radiance{0};                        // mean colour where they are 1
+    std::shared_ptr<const BrickPool> bricks; // emitted luminance, normalized to a maximum of 1; null = no emission
+    vec3 radiance{0};                        // mean emission where the bricks are 1
     float spread = 0, out_of_gamut = 0;      // as in EmissionField
 };
 
-// Of a field on the voxels of its source, whose grids share the transform of the first. Throws Error as make_bricks().
+// Evaluates a field on the voxels of its source grids, which share the transform of the first. Throws Error like
+// make_bricks().
 LuminanceBricks luminance_bricks(const EmissionField& field, const dmat4& index_to_world, const std::string& name);
 
-// Mean of the factors over the density that they color, and by what share of it they differ from that.
+// Density-weighted mean of the albedo factor, and its mean relative deviation from that.
 struct MeanFactor {
     vec3 mean{1};
     float spread = 0;

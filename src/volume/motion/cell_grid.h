@@ -1,4 +1,4 @@
-// A box of cells of 8³ voxels, and leaves made for some of them. Internal to moved fog.
+// A box of cells of 8³ voxels, and leaves built for some of them. Internal to moved_fog.cpp.
 #pragma once
 #include "volume/bricks/bricks.h"
 
@@ -18,20 +18,20 @@ struct CellGrid {
     }
 };
 
-// Calls body(cell) for each from low to high, both included.
+// Calls body(cell) for each cell in low..high, inclusive.
 template<class Body> void for_each_cell(ivec3 low, ivec3 high, const Body& body) {
     for (int x = low.x; x <= high.x; ++x)
         for (int y = low.y; y <= high.y; ++y)
             for (int z = low.z; z <= high.z; ++z) body(ivec3(x, y, z));
 }
 
-// The cells of a pool's bricks that are not empty.
+// The cells of a pool's nonempty bricks.
 std::vector<ivec3> filled_cells(const BrickPool& pool);
 
-// The grid around a box of voxels. Throws Error (refused) where it would have more than 2^24 cells.
+// The grid around a box of voxels. Throws Error (refused) if it would exceed 2^24 cells.
 CellGrid cells_around(dvec3 low, dvec3 high, const std::string& what);
 
-// Leaves for cells, filled in parallel: value(voxel, cell). Throws Error (out_of_memory).
+// Builds leaves for the cells and fills them in parallel by fill(cell, leaf). Throws Error (out_of_memory).
 Leaves filled_leaves(const std::vector<ivec3>& cells, const std::string& what,
                      const std::function<void(ivec3 cell, Leaf& leaf)>& fill);
 }

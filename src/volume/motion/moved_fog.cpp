@@ -12,13 +12,13 @@
 
 namespace tyndall {
 namespace {
-constexpr double max_voxels = 4096; // that fog may be moved by
-constexpr int iterations = 4;       // of the way back at most: until it settles
+constexpr double max_voxels = 4096; // maximum displacement
+constexpr int iterations = 4;       // at most, of the fixed-point backtrace
 constexpr float settled = 0.01f;    // voxels
 
 ivec3 voxel_of(size_t v) { return {static_cast<int>(v >> 6), static_cast<int>(v >> 3 & 7), static_cast<int>(v & 7)}; }
 
-// The same bricks with index coordinates for places.
+// The same bricks placed by `placed`, by default in their index coordinates.
 BrickPool in_index_space(const BrickPool& pool, const dmat4& placed = dmat4(1)) {
     BrickPool result = pool;
     place(result, placed);
@@ -32,7 +32,7 @@ struct VelocityRange {
     vec3 mean() const { return known > 0 ? sum / static_cast<float>(known) : vec3(0); }
 };
 
-// Over all corners of a brick's voxels.
+// Range and sum of the known velocities at all 9³ voxels of a brick.
 VelocityRange range_in(const LocalVelocity& velocity, ivec3 cell) {
     VelocityRange range;
     for_each_cell(cell * 8, cell * 8 + 8, [&](ivec3 voxel) {
@@ -45,7 +45,7 @@ VelocityRange range_in(const LocalVelocity& velocity, ivec3 cell) {
     return range;
 }
 
-// What gets to a cell: how much of it there is, and its mean velocity times that.
+// Bricks that may reach a cell: the sum of their mean velocities, and their number.
 struct Arrivals {
     vec3 velocity{0};
     float count = 0;
@@ -54,7 +54,7 @@ struct Arrivals {
 struct MovedCells {
     CellGrid grid;
     std::vector<Arrivals> arrivals;
-    std::vector<ivec3> cells; // that anything gets to
+    std::vector<ivec3> cells; // cells that any brick may reach
 };
 
 [[noreturn]] void refuse_scattered(const std::string& what) {
@@ -62,7 +62,7 @@ struct MovedCells {
                  "velocity_scale, and clamp of the grid");
 }
 
-// Each brick notes itself in every cell that it may get to.
+// Limits the total number of (brick, reachable cell) pairs.
 void check_reach(const std::vector<Box>& boxes, const std::string& what) {
     constexpr double max_notes = 1 << 28;
     double notes = 0;
@@ -73,7 +73,7 @@ void check_reach(const std::vector<Box>& boxes, const std::string& what) {
     if (notes > max_notes) refuse_scattered(what);
 }
 
-// Smoke of few bricks takes 64 MB at most, of many 16 times what it takes.
+// Limits the result to 64 MB for small volumes, and to 16 times the input for large ones.
 size_t max_cells(size_t bricks) { return std::max<size_t>(1 << 15, 16 * bricks); }
 
 MovedCells moved_cells(const BrickPool& fog, const LocalVelocity& velocity, float time, const std::string& what) {
@@ -84,7 +84,7 @@ MovedCells moved_cells(const BrickPool& fog, const LocalVelocity& velocity, floa
             ranges[i] = range_in(velocity, from[i]);
     });
 
-    // Where each brick gets to: from its first voxel to before the first of the next.
+    // The box each brick may reach, from its first voxel up to the first voxel of the next brick.
     std::vector<Box> boxes(from.size());
     Box all;
     for (size_t i = 0; i < from.size(); ++i) {
@@ -105,7 +105,7 @@ MovedCells moved_cells(const BrickPool& fog, const LocalVelocity& velocity, floa
     return moved;
 }
 
-// Where what is at x now was.
+// Backtraces x to where its fog came from; `usual` is the fallback velocity where none is known at x.
 vec3 way_back(const LocalVelocity& velocity, vec3 x, vec3 usual, float time) {
     vec3 v;
     bool known = velocity.at(x, v);
@@ -151,14 +151,14 @@ SparseVolume moved_fog(const PlacedBricks& fog, const VelocityField& field, doub
 }
 
 namespace {
-// One of two grids of fog, on the voxels of the result.
+// One of the two blended grids, resampled on the voxels of the result.
 struct BlendPart {
     float weight = 0;
     BrickPool bricks;  // in index coordinates of the result
-    bool same = false; // on the same voxels
+    bool same = false; // shares the result's voxel grid
     std::vector<ivec3> cells;
 
-    // The one value that it has all over a cell, if it is known to.
+    // The value over a cell if it is known to be constant there.
     std::optional<float> even(ivec3 cell) const {
         if (bricks.empty()) return 0.0f;
         if (!same) return {};
@@ -171,7 +171,7 @@ struct BlendPart {
     }
 };
 
-// The cells of the result that a cell of other voxels reaches into.
+// Appends the cells of the result that a cell of another voxel grid overlaps.
 void append_cells(const mat4& to_result, ivec3 cell, std::vector<ivec3>& cells) {
     const Box box = transform(to_result, Box{vec3(cell * 8), vec3(cell * 8 + 8)});
     for_each_cell(ivec3(glm::floor(box.low / 8.0f)), ivec3(glm::floor(box.high / 8.0f)),
@@ -199,7 +199,7 @@ SparseVolume blended_fog(const PlacedBricks& a, const PlacedBricks& b, float sha
     volume.name = what, volume.index_to_world = on_b ? b.index_to_world : a.index_to_world;
     const BlendPart parts[] = {part_of(a, 1 - share, volume.index_to_world), part_of(b, share, volume.index_to_world)};
 
-    // Each cell once.
+    // Collect each cell once.
     dvec3 low(infinity), high(-infinity);
     for (const BlendPart& part : parts)
         for (const ivec3 cell : part.cells)

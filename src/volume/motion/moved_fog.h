@@ -1,4 +1,4 @@
-// Fog between the frames of its files: moved along its velocities, or mixed from two frames.
+// Fog between the frames of its file sequence: advected along its velocities, or blended from two frames.
 #pragma once
 #include "volume/bricks/sparse_volume.h"
 #include "volume/emission/luminance.h"
@@ -8,15 +8,14 @@
 namespace tyndall {
 struct VelocityField;
 
-// Fog as it is a time later, earlier where that is below 0, on voxels of the same size. Each piece goes on along a
-// straight line at the velocity that it has, v(y): at x is now what was at y = x - v(y)·time, found by fixed-point
-// iteration from v(x). That is the look-up of Eulerian motion blur (Kim and Ko 2007), which Arnold, Karma and Cycles do
-// as well; Cycles iterates it once. Where no velocity is known, fog stands still. Values move along and are not
-// thinned where fog spreads. `what` is named in errors. Throws Error: refused, where it would move by thousands of
-// voxels; out_of_memory.
+// Fog advected by `time` (may be negative) on voxels of the same size. Fog moves in straight lines: the value at x is
+// looked up at y = x - v(y)·time, found by fixed-point iteration starting from v(x). This is the lookup of Eulerian
+// motion blur (Kim and Ko 2007), as in Arnold, Karma and Cycles; Cycles iterates once. Fog without a known velocity
+// stays in place. Densities are not rescaled where the flow diverges. `what` names the fog in errors. Throws Error:
+// refused if it would move by thousands of voxels; out_of_memory.
 SparseVolume moved_fog(const PlacedBricks& fog, const VelocityField& velocity, double time, const std::string& what);
 
-// (1 - share)·a + share·b on the finer of their voxels, a's where they are alike. Either may have no bricks. Throws
-// Error (out_of_memory).
+// (1 - share)·a + share·b on the finer of the two voxel grids, or on a's if they are equally fine. Either may have no
+// bricks. Throws Error (refused, out_of_memory).
 SparseVolume blended_fog(const PlacedBricks& a, const PlacedBricks& b, float share, const std::string& what);
 }

@@ -8,9 +8,9 @@
 
 namespace tyndall {
 namespace {
-constexpr float min_share = 1e-3f; // of a sample's weight, on voxels that are known
+constexpr float min_share = 1e-3f; // minimum share of the interpolation weight on known voxels
 
-// Least and greatest known value: `volume` and `known` have the same leaves and tiles.
+// Smallest and largest known value; `volume` and `known` have the same leaves and tiles.
 Interval<float> range_of(const SparseVolume& volume, const SparseVolume& known) {
     Interval<float> range{infinity, -infinity};
     const auto add = [&](float value) { range = {std::min(range.low, value), std::max(range.high, value)}; };
@@ -21,7 +21,7 @@ Interval<float> range_of(const SparseVolume& volume, const SparseVolume& known) 
     return range;
 }
 
-// Values to 0..1: halves then hold them to a 4096th of the range, or better.
+// Maps values to 0..1, where halves resolve at least a 4096th of the range.
 void normalize(const SparseVolume& known, float low, float range, SparseVolume& volume) {
     const auto normal = [&](float value) { return range > 0 ? (value - low) / range : 0.0f; };
     parallel_ranges(static_cast<int64_t>(volume.leaves.size()), 64, [&](int64_t begin, int64_t end) {
@@ -34,7 +34,7 @@ void normalize(const SparseVolume& known, float low, float range, SparseVolume& 
     for (Tile& tile : volume.tiles) tile.value = normal(tile.value);
 }
 
-// The same bricks where another volume's index space is.
+// A copy of the bricks with another transform.
 std::shared_ptr<const BrickPool> placed(const BrickPool& pool, const dmat4& index_to_world) {
     auto moved = std::make_shared<BrickPool>(pool);
     place(*moved, index_to_world);

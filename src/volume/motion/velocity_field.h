@@ -1,4 +1,4 @@
-// How fast fog moves where: what a velocity grid of a file says, ready for sampling.
+// A file's velocity grid, prepared for sampling.
 #pragma once
 #include "volume/vdb/vdb.h"
 
@@ -8,24 +8,24 @@
 namespace tyndall {
 struct BrickPool;
 
-// Velocities in the file's lengths per unit of time, trilinear between voxels that are known.
+// Velocities in the file's units of length and time, trilinear between known voxels.
 struct VelocityField {
-    std::array<std::shared_ptr<const BrickPool>, 3> components; // (velocity - low) / range, 0 where not known
-    std::array<std::shared_ptr<const BrickPool>, 3> known;      // 1 where it is; on the voxels of the component
+    std::array<std::shared_ptr<const BrickPool>, 3> components; // (velocity - low) / range, 0 where unknown
+    std::array<std::shared_ptr<const BrickPool>, 3> known;      // 1 at known voxels; on the voxels of the component
     std::array<dmat4, 3> index_to_world{dmat4(1), dmat4(1), dmat4(1)};
     vec3 low{0}, range{0};
-    float fastest = 0; // no speed is above it; 0 = nothing moves
+    float fastest = 0; // upper bound of the speed; 0 = nothing moves
 };
 
-// Throws Error as make_bricks().
+// Throws Error like make_bricks().
 VelocityField make_velocity_field(VelocityVolume volume);
 
-// A field as it is seen from fog: in index coordinates of that, voxels of it per unit of time.
+// A field in the index coordinates of a fog grid, in its voxels per unit of time.
 class LocalVelocity {
 public:
     LocalVelocity(const VelocityField& field, const dmat4& index_to_world);
 
-    // False where no velocity is known.
+    // Returns false where no velocity is known.
     bool at(vec3 point, vec3& velocity) const;
 
 private:

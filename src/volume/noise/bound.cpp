@@ -28,8 +28,7 @@ namespace tyndall {
 HWY_EXPORT(noise_bound_kernel);
 
 float fractal_noise_bound(const FractalNoise& noise, float turn, const Box& box) {
-    // Sixteen pieces are bounded more closely than the whole; neighbours share their faces, so that nothing falls
-    // between.
+    // Sixteen pieces give a tighter bound than the whole box; neighbors share faces, so there are no gaps.
     float low[3][16], high[3][16];
     constexpr int pieces[3] = {4, 2, 2};
     for (int i = 0; i < 16; ++i) {

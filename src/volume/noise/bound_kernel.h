@@ -1,4 +1,4 @@
-// Rigorous bounds of gradient noise over boxes, one box per lane; included by kernel files only.
+// Conservative bounds of gradient noise over boxes, one box per lane; included by kernel files only.
 #if defined(TYNDALL_VOLUME_NOISE_BOUND_KERNEL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_NOISE_BOUND_KERNEL_H
 #undef TYNDALL_VOLUME_NOISE_BOUND_KERNEL_H
@@ -14,15 +14,15 @@ struct Range {
     FloatVec low, high;
 };
 struct Boxes {
-    Range axis[3]; // metres
+    Range axis[3]; // meters
 };
 
-// A stretch of one axis as the (at most two) cells it touches. Rounding is monotone, so that a point between the ends
-// gets a cell and a fraction between theirs.
+// An interval along one axis, split into the (at most two) cells it touches. Rounding is monotonic, so the cell and
+// fraction of any point inside lie between those of the ends.
 struct CellStretch {
     LatticeAxis ends[2];
     Range fraction[2], faded[2];
-    bool two = false;        // some lane touches two cells
+    bool two = false;        // at least one lane touches two cells
     hn::Mask<FloatTag> wide; // lanes that touch more than two
 };
 
@@ -32,7 +32,7 @@ HWY_INLINE CellStretch cell_stretch(const NoiseOctave& octave, int axis, const R
     s.ends[0] = lattice_axis(octave, axis, x.low), s.ends[1] = lattice_axis(octave, axis, x.high);
     const auto same = hn::RebindMask(tag, hn::Eq(s.ends[0].low, s.ends[1].low));
     const auto next = hn::RebindMask(tag, hn::Eq(s.ends[0].high, s.ends[1].low));
-    // Cell numbers wrap after 2^32 cells: the width says what equal numbers cannot.
+    // Cell numbers wrap after 2^32 cells, so equal numbers are not enough: check the width as well.
     const auto longer = hn::Gt(hn::Mul(hn::Sub(x.high, x.low), splat(octave.frequency)), splat(2.5f));
     s.wide = hn::Or(longer, hn::Not(hn::Or(same, next)));
     s.two = !hn::AllTrue(tag, same);
@@ -42,12 +42,12 @@ HWY_INLINE CellStretch cell_stretch(const NoiseOctave& octave, int axis, const R
     return s;
 }
 
-// The values a·x can take.
+// Range of a·x for x in low..high.
 HWY_INLINE Range scaled(FloatVec a, FloatVec low, FloatVec high) {
     const FloatVec p = hn::Mul(a, low), q = hn::Mul(a, high);
     return {hn::Min(p, q), hn::Max(p, q)};
 }
-// A weighted mean of two ranges is linear in the weight: its extremes are at the ends of the weight's range.
+// Range of a linear interpolation: it is linear in the weight, so the extremes are at the ends of the weight's range.
 HWY_INLINE Range mixed(const Range& a, const Range& b, const Range& weight) {
     return {hn::Min(lerp(a.low, b.low, weight.low), lerp(a.low, b.low, weight.high)),
             hn::Max(lerp(a.high, b.high, weight.low), lerp(a.high, b.high, weight.high))};
@@ -65,7 +65,8 @@ struct StretchPart {
     HWY_INLINE const Range& weight() const { return stretch.faded[part]; }
 };
 
-// Noise within one cell: every corner's ramp takes its extremes at corners of the box, and means of ramps are mixed.
+// Range of the noise within one cell: every corner's ramp takes its extremes at corners of the box; the ranges of the
+// ramps are then interpolated.
 HWY_INLINE Range cell_range(const GradientTable& table, const StretchPart& x, const StretchPart& y,
                             const StretchPart& z) {
     const IntVec seed = splat_int(table.octave.seed);
@@ -84,7 +85,7 @@ HWY_INLINE Range cell_range(const GradientTable& table, const StretchPart& x, co
     return mixed(side(0), side(1), x.weight());
 }
 
-// What an octave's value can be in each box, rounding included.
+// Range of an octave in each box, with a margin for rounding.
 HWY_INLINE Range octave_range(const NoiseOctave& octave, const Boxes& boxes) {
     const FloatTag tag;
     const Range most{splat(-noise_peak), splat(noise_peak)};
@@ -106,7 +107,7 @@ HWY_INLINE Range octave_range(const NoiseOctave& octave, const Boxes& boxes) {
             hn::IfThenElse(wide, most.high, hn::Min(most.high, hn::Add(range.high, rounding)))};
 }
 
-// An upper bound of the whole sum in each box.
+// Upper bound of the whole sum in each box.
 HWY_INLINE FloatVec sum_bound(const NoiseSum& sum, const Boxes& boxes) {
     FloatVec total = splat(sum.start + 1e-5f);
     for (const NoiseOctave& octave : sum.octaves) {

@@ -1,5 +1,5 @@
-// An octave along a column of points that differ in x alone: what y and z decide is computed once for all of them, the
-// gradients once per cell. To the last bit what octave_noise() gives. Included by kernel files only.
+// An octave along a column of points that differ only in x: terms in y and z are computed once for all points,
+// gradients once per cell. Bit-identical to octave_noise(). Included by kernel files only.
 #if defined(TYNDALL_VOLUME_NOISE_COLUMN_KERNEL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_NOISE_COLUMN_KERNEL_H
 #undef TYNDALL_VOLUME_NOISE_COLUMN_KERNEL_H
@@ -38,7 +38,7 @@ public:
     }
 
 private:
-    // The parts of corner 4·i + 2·j + k: what multiplies x, and the products with y and z summed.
+    // Sets the terms of corner 4·i + 2·j + k: the factor of x, and the sum of the products with y and z.
     HWY_INLINE void set_corner(int corner, FloatVec gx, FloatVec gy, FloatVec gz) {
         const FloatVec one = splat(1);
         const FloatVec y = corner & 2 ? hn::Sub(y_.fraction, one) : y_.fraction;

@@ -1,5 +1,5 @@
-// Curl of a vector of three gradient noises: a field without sources or sinks that stirs coordinates (Bridson, Hourihan
-// and Nordenstam, "Curl-Noise for Procedural Fluid Flow", 2007); included by kernel files only.
+// Curl of a vector potential of three gradient noises: a divergence-free field that stirs coordinates (Bridson,
+// Hourihan and Nordenstam, "Curl-Noise for Procedural Fluid Flow", 2007); included by kernel files only.
 #if defined(TYNDALL_VOLUME_NOISE_CURL_KERNEL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_NOISE_CURL_KERNEL_H
 #undef TYNDALL_VOLUME_NOISE_CURL_KERNEL_H
@@ -15,7 +15,7 @@ struct VectorOfThree {
     FloatVec x, y, z;
 };
 
-// One axis of the weights of a cell's corners and their slopes.
+// Weights of a cell's corners along one axis, and their derivatives.
 struct AxisWeights {
     FloatVec offset[2], weight[2], slope[2];
 
@@ -24,7 +24,7 @@ struct AxisWeights {
                                                                                               fade_slope(t)} {}
 };
 
-// Curl per cell (not per metre) at points. The three potentials share the lattice and take different bits of its hash.
+// Curl per cell (not per meter) at points. The three potentials share the lattice but use different bits of its hash.
 HWY_INLINE VectorOfThree noise_curl(const NoiseOctave& octave, FloatVec px, FloatVec py, FloatVec pz) {
     const GradientTable table(octave);
     const LatticeAxis lx = lattice_axis(octave, 0, px), ly = lattice_axis(octave, 1, py),
@@ -35,7 +35,7 @@ HWY_INLINE VectorOfThree noise_curl(const NoiseOctave& octave, FloatVec px, Floa
         const IntVec seed = splat_int(octave.seed);
         const IntVec xy = hn::Xor(hn::Xor(i ? lx.high : lx.low, seed), j ? ly.high : ly.low);
         const IntVec hash = corner_hash(xy, k ? lz.high : lz.low);
-        // The slope of weight · ramp is weight · gradient + slope of the weight · ramp.
+        // Product rule: (weight · ramp)' = weight · gradient + weight' · ramp.
         const FloatVec dx = hn::Mul(hn::Mul(x.slope[i], y.weight[j]), z.weight[k]);
         const FloatVec dy = hn::Mul(hn::Mul(x.weight[i], y.slope[j]), z.weight[k]);
         const FloatVec dz = hn::Mul(hn::Mul(x.weight[i], y.weight[j]), z.slope[k]);

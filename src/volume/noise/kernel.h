@@ -18,8 +18,7 @@ using IntVec = hn::Vec<IntTag>;
 HWY_INLINE FloatVec splat(float value) { return hn::Set(FloatTag(), value); }
 HWY_INLINE IntVec splat_int(uint32_t value) { return hn::Set(IntTag(), static_cast<int32_t>(value)); }
 
-// Where points lie along one axis of a lattice: the fraction within the cell, and the hashed cell numbers of both
-// sides.
+// Lattice coordinates of points along one axis: the fraction within the cell, and the hashed numbers of its two sides.
 struct LatticeAxis {
     FloatVec fraction;
     IntVec low, high;
@@ -27,13 +26,14 @@ struct LatticeAxis {
 
 inline constexpr uint32_t axis_primes[3] = {501125321u, 1136930381u, 1720413743u};
 
-// Cell numbers up to 2^22 become integers by the mantissa of a float: one addition.
+// Converts cell numbers up to 2^22 to integers through the float mantissa, with one addition.
 HWY_INLINE IntVec cell_number(FloatVec whole, int32_t base) {
     const IntVec bits = hn::BitCast(IntTag(), hn::Add(whole, splat(12582912.0f)));
     return hn::Add(bits, splat_int(static_cast<uint32_t>(base) - 0x4b400000u));
 }
 
-// Far from the origin the first product is off by parts of a cell: the second, freed of whole cells, is not.
+// Far from the origin the first product is off by fractions of a cell; the second subtracts the whole cells before
+// rounding and stays accurate.
 HWY_INLINE LatticeAxis lattice_axis(const NoiseOctave& octave, int axis, FloatVec x) {
     const FloatVec frequency = splat(octave.frequency), base = splat(octave.fraction[axis]);
     const FloatVec near = hn::Floor(hn::MulAdd(x, frequency, base));
@@ -56,7 +56,7 @@ HWY_INLINE FloatVec fade_slope(FloatVec t) { // 30t²(t - 1)²
 }
 HWY_INLINE FloatVec lerp(FloatVec a, FloatVec b, FloatVec t) { return hn::MulAdd(t, hn::Sub(b, a), a); }
 
-// The 16 gradients in registers, looked up by the upper four bits of a hash.
+// The 16 gradients in registers, indexed by the upper four bits of a hash.
 struct GradientTable {
     const NoiseOctave& octave;
     FloatVec x, y, z;
@@ -72,7 +72,7 @@ struct Gradient {
 inline constexpr uint32_t hash_factor = 0x27d4eb2du;
 HWY_INLINE IntVec corner_hash(IntVec xy, IntVec z) { return hn::Mul(hn::Xor(xy, z), splat_int(hash_factor)); }
 
-// The gradient a hash chooses; where a register holds only eight of them, without the sign that flip_by() adds.
+// The gradient selected by a hash. If a register holds only eight of them, flip_by() must apply the sign.
 HWY_INLINE Gradient gradient(const GradientTable& table, IntVec hash) {
     const hn::RebindToUnsigned<IntTag> bits;
     const auto entry = hn::ShiftRight<28>(hn::BitCast(bits, hash));
@@ -99,7 +99,7 @@ HWY_INLINE FloatVec ramp(const GradientTable& table, IntVec hash, FloatVec x, Fl
     return flip_by(hash, hn::MulAdd(g.x, x, hn::MulAdd(g.y, y, hn::Mul(g.z, z))));
 }
 
-// The eight ramps of a cell, mixed by the faded fractions; `corner_ramp(i, j, k, dx, dy, dz)` gives one of them.
+// Interpolates the eight ramps of a cell with the faded fractions; corner_ramp(i, j, k, dx, dy, dz) returns one.
 template<class CornerRamp>
 HWY_INLINE FloatVec mixed_ramps(FloatVec x0, FloatVec y0, FloatVec z0, const CornerRamp& corner_ramp) {
     const FloatVec one = splat(1), x1 = hn::Sub(x0, one), y1 = hn::Sub(y0, one), z1 = hn::Sub(z0, one);
@@ -122,7 +122,7 @@ HWY_INLINE FloatVec noise_in_many_cells(const NoiseOctave& octave, const Lattice
                        });
 }
 
-// All points in the cell of these hashed numbers: its gradients are the same in every lane.
+// All points lie in the cell with these hashed numbers, so its gradients are the same in every lane.
 HWY_INLINE FloatVec noise_in_one_cell(const NoiseOctave& octave, FloatVec x, FloatVec y, FloatVec z, uint32_t x_low,
                                       uint32_t y_low, uint32_t z_low) {
     const uint32_t x_hash[2] = {x_low ^ octave.seed, (x_low + axis_primes[0]) ^ octave.seed};
@@ -134,7 +134,7 @@ HWY_INLINE FloatVec noise_in_one_cell(const NoiseOctave& octave, FloatVec x, Flo
     });
 }
 
-// The value of an octave, -√3/2..√3/2. Neighbouring points often share a cell of a coarse octave: twice as fast.
+// The value of an octave, -√3/2..√3/2. Points often share one cell of a coarse octave, which is twice as fast.
 HWY_INLINE FloatVec octave_noise(const NoiseOctave& octave, FloatVec px, FloatVec py, FloatVec pz) {
     const LatticeAxis x = lattice_axis(octave, 0, px), y = lattice_axis(octave, 1, py), z = lattice_axis(octave, 2, pz);
     const IntTag tag;

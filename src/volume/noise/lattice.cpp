@@ -5,15 +5,15 @@
 
 namespace tyndall {
 namespace {
-uint32_t mixed(uint32_t x) { // finaliser of MurmurHash3
+uint32_t mixed(uint32_t x) { // finalizer of MurmurHash3
     x = (x ^ (x >> 16)) * 0x85ebca6bu;
     x = (x ^ (x >> 13)) * 0xc2b2ae35u;
     return x ^ (x >> 16);
 }
 
-// Gradients turn in four planes whose normals are the diagonals of a cube; each plane holds two perpendicular pairs of
-// opposite ones. The sum of their outer products is the identity at every moment: contrast is the same in every
-// direction and does not pulse. The planes turn at different whole speeds, so that no moment mirrors another.
+// Gradients rotate in four planes whose normals are the diagonals of a cube; each plane holds two perpendicular pairs
+// of opposite gradients. The sum of their outer products stays proportional to the identity, so contrast is isotropic
+// and does not pulse. The planes rotate at different integer speeds, so no moment mirrors another.
 void turn_gradients(NoiseOctave& octave, double turn, int speed) {
     constexpr std::array<std::array<double, 3>, 4> normals{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
     constexpr std::array<int, 4> speeds{1, -1, 2, -2};
@@ -37,7 +37,7 @@ NoiseOctave placed_octave(double frequency, uint32_t seed, double turn, int spee
     NoiseOctave octave;
     octave.frequency = static_cast<float>(frequency);
     octave.seed = mixed(seed);
-    // Whole cells are split off in double, so that a field throughput far away is as smooth as one at home.
+    // Whole cells are split off in double precision, so a field advected far away stays as smooth as near the origin.
     for (int axis = 0; axis < 3; ++axis) {
         const double shift = (mixed(seed + 0x9e3779b9u * (axis + 1)) >> 8) * 0x1p-24;
         const double position = local_origin[axis] * frequency + shift;
@@ -69,8 +69,8 @@ NoiseSum noise_sum(const FractalNoise& noise, const std::vector<NoiseLayer>& lay
     for (int o = 0; o < noise.octaves; ++o) total += std::pow(double{noise.gain}, o);
     for (const NoiseLayer& layer : layers) power += double{layer.weight} * layer.weight;
 
-    // Layers are independent fields: weights whose squares sum to 1 keep the contrast of the mixture.
-    // Billows |value| get a mean of 0 too, which the mixing of layers asks for.
+    // Layers are independent fields: weights whose squares sum to 1 preserve the contrast of the mixture.
+    // That requires a mean of 0, so the mean of billows |value| is subtracted.
     const double middle = noise.billow ? noise_mean_size : 0;
     double start = 0, frequency = 1 / double{noise.scale};
     for (int o = 0; o < noise.octaves; ++o, frequency *= noise.lacunarity) {
@@ -86,7 +86,7 @@ NoiseSum noise_sum(const FractalNoise& noise, const std::vector<NoiseLayer>& lay
     }
     sum.start = static_cast<float>(start);
 
-    // Room for rounding: a float sum of this size is off by less than 1e-5 of its largest terms.
+    // Margin for rounding: the error of a float sum of this size is below 1e-5 of its largest terms.
     double rest = 0;
     sum.rest.assign(sum.octaves.size() + 1, 0);
     for (size_t k = sum.octaves.size(); k-- > 0;) {

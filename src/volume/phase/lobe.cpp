@@ -5,16 +5,16 @@
 
 namespace tyndall {
 namespace {
-constexpr double min_direction = 5e-3; // |g|; below, lobes are taken as nearly even
+constexpr double min_direction = 5e-3; // |g|; lobes below are treated as nearly isotropic
 
-// Light from -1 to a cosine, ∫ (1 + α m²) (1 + g² - 2 g m)^{-3/2} dm for g > 0, but for a constant. With s² = 1 + g² -
-// 2 g m it is ∫ (1 + α m²) / (g s²) ds, and m² a polynomial in s².
+// Unnormalized CDF, ∫ (1 + α m²) (1 + g² - 2 g m)^{-3/2} dm for g > 0, up to a constant. Substituting s² = 1 + g² - 2 g
+// m gives ∫ (1 + α m²) / (g s²) ds, with m² a polynomial in s².
 double light_up_to(double s, double g, double alpha) {
     const double a = 1 + g * g;
     return (1 / s + alpha / (4 * g * g) * (a * a / s + 2 * a * s - s * s * s / 3)) / g;
 }
 
-// Of a hardly directed lobe: HG as its first four Legendre terms, up to g = 0.005 right to 6e-9.
+// CDF of a nearly isotropic lobe, with HG as its first four Legendre terms: error below 6e-9 up to g = 0.005.
 double even_share(double g, double alpha, double cosine) {
     const double g2 = g * g, g3 = g2 * g; // HG ≈ a0 + a1 c + a2 c² + a3 c³
     const double a0 = 1 - 2.5 * g2, a1 = 3 * g - 10.5 * g3, a2 = 7.5 * g2, a3 = 17.5 * g3;
@@ -54,8 +54,8 @@ double share_below(const PhaseLobe& lobe, double cosine) {
     return lobe.g < 0 ? 1 - share : share;
 }
 
-// Newton's method between bounds. The share of the light is nearly linear in 1/s, where Henyey and Greenstein's is a
-// straight line; that of a lobe without direction in c.
+// Newton's method with bracketing. The CDF is nearly linear in 1/s (exactly linear for Henyey-Greenstein); for a nearly
+// isotropic lobe it is nearly linear in c.
 double sampled_cosine(const PhaseLobe& lobe, double u) {
     const double g = std::abs(lobe.g), alpha = lobe.alpha, share = lobe.g < 0 ? 1 - u : u;
     const bool directed = g > min_direction;

@@ -22,7 +22,7 @@ PhaseShape shape_of(PhaseTable table) {
     return shape;
 }
 
-// A lobe in proportion to its weight; what picked it then picks the cosine.
+// Selects a lobe in proportion to its weight and reuses u, rescaled, to sample its cosine.
 double sampled_cosine(const PhaseShape& shape, double u) {
     if (shape.lobes.empty()) return sampled_cosine(shape.table, u);
     size_t i = 0;
@@ -37,7 +37,7 @@ double share_below(const PhaseShape& shape, double cosine) {
     return sum;
 }
 
-// Of lobes: between two cosines, the least of each factor of each lobe.
+// For lobes: over small intervals of the cosine, combines the minima of each lobe's factors.
 double min_value(const PhaseShape& shape) {
     if (shape.lobes.empty()) return *std::ranges::min_element(shape.table.values);
     constexpr int pieces = 512;

@@ -1,4 +1,4 @@
-// Phase functions of more than one number: lobes or a table, made once and shared by all that scatter so.
+// Phase functions with more than one parameter: lobes or a table, built once and shared by all media that use them.
 #pragma once
 #include "volume/phase/lobe.h"
 #include "volume/phase/table.h"
@@ -7,7 +7,7 @@
 
 namespace tyndall {
 struct PhaseShape {
-    std::vector<PhaseLobe> lobes; // their weights add up to 1; none: it is the table
+    std::vector<PhaseLobe> lobes; // weights sum to 1; if empty, the table is used
     PhaseTable table;
     float mean_cosine = 0;
     float narrowest = 0; // |g| of the narrowest lobe
@@ -16,13 +16,13 @@ struct PhaseShape {
 PhaseShape shape_of(std::vector<PhaseLobe> lobes);
 PhaseShape shape_of(PhaseTable table);
 
-double sampled_cosine(const PhaseShape& shape, double u);   // as of a lobe
+double sampled_cosine(const PhaseShape& shape, double u);   // as for a lobe
 double share_below(const PhaseShape& shape, double cosine); // likewise
 
-// A number that no value of it falls below, 1/sr; 0 where values may be 0.
+// A lower bound of the value, 1/sr; 0 if values may be 0.
 double min_value(const PhaseShape& shape);
 
-// Value in 1/sr, to the rounding of T.
+// Value in 1/sr, in the precision of T.
 template<class T> T shape_value(const PhaseShape& shape, T cosine) {
     if (shape.lobes.empty()) return table_value(shape.table, cosine);
     T sum = 0;

@@ -9,12 +9,12 @@ namespace {
 constexpr int min_half = 2048, max_half = 8192;
 constexpr double circle = 2 * std::numbers::pi;
 
-// Cosines as the table counts them: 0 straight on, 1 sideways, 2 straight back.
+// Table coordinate of a cosine: 0 forward, 1 perpendicular, 2 backward.
 double place_of(double cosine) {
     return cosine < 0 ? 2 - std::sqrt(1 + std::max(cosine, -1.0)) : std::sqrt(1 - std::min(cosine, 1.0));
 }
 
-// Twice as fine as a step in place, in powers of two.
+// A power-of-two resolution at least twice as fine as `step` in table coordinates, within limits.
 int half_for(double step) {
     int half = min_half;
     while (half < max_half && half * step < 2) half *= 2;
@@ -27,13 +27,13 @@ PhaseTable empty_table(int half) {
     return table;
 }
 
-// Light between an entry and the next, linear in the cosine.
+// Integral between entry i and the next, linear in the cosine.
 double cell_light(const PhaseTable& table, size_t i) {
     const double a = table.values[i], b = table.values[i + 1];
     return circle * 0.5 * (a + b) * (table.cosine(i) - table.cosine(i + 1));
 }
 
-// Fills a table with what value(cosine) says, in any unit; returns its integral over the sphere.
+// Fills a table with value(cosine), in any unit, and normalizes it; returns the original integral over the sphere.
 template<class Value> double fill(PhaseTable& table, const Value& value) {
     std::vector<double> given(table.values.size());
     double sum = 0;
@@ -76,7 +76,7 @@ PhaseTable make_table(std::span<const PhaseEntry> entries, PhaseTableNotes& note
         notes.integral += circle * 0.5 * (entries[i].value + entries[i + 1].value) * (cosines[i] - cosines[i + 1]);
     }
     PhaseTable table = empty_table(half_for(finest));
-    size_t at = 0; // the entry before, as cosines fall
+    size_t at = 0; // index of the entry before c; cosines are descending
     const double sum = fill(table, [&](double c) {
         while (at + 2 < cosines.size() && cosines[at + 1] > c) ++at;
         const double wide = cosines[at] - cosines[at + 1], share = wide > 0 ? (cosines[at] - c) / wide : 0;
@@ -88,13 +88,13 @@ PhaseTable make_table(std::span<const PhaseEntry> entries, PhaseTableNotes& note
 
 PhaseTable make_table(std::span<const double> coefficients, PhaseTableNotes& notes) {
     assert(!coefficients.empty() && coefficients[0] > 0);
-    // Some 25 entries to the shortest wave of the series, which is 2π / degree long.
+    // About 25 entries for the shortest wavelength of the series, 2π / degree.
     PhaseTable table = empty_table(half_for(0.25 / static_cast<double>(coefficients.size())));
     const double scale = 1 / (4 * std::numbers::pi);
     double below = 0, above = 0;
     fill(table, [&](double c) {
         const double value = scale * series(coefficients, c), wide = std::sqrt(1 - c * c);
-        (value < 0 ? below : above) += std::abs(value) * wide; // entries are about even in the angle
+        (value < 0 ? below : above) += std::abs(value) * wide; // entries are roughly uniform in the angle
         return std::max(value, 0.0);
     });
     notes = {.integral = coefficients[0], .negative = below / (above + below)};
@@ -102,7 +102,7 @@ PhaseTable make_table(std::span<const double> coefficients, PhaseTableNotes& not
 }
 
 PhaseTable make_table(const std::function<double(double)>& value, double finest) {
-    PhaseTable table = empty_table(half_for(finest / std::numbers::sqrt2)); // straight on places are angles over √2
+    PhaseTable table = empty_table(half_for(finest / std::numbers::sqrt2)); // coordinates near forward: angle / √2
     fill(table, value);
     return table;
 }
@@ -110,7 +110,7 @@ PhaseTable make_table(const std::function<double(double)>& value, double finest)
 double mean_cosine(const PhaseTable& table) {
     double sum = 0;
     for (size_t i = 0; i + 1 < table.values.size(); ++i) {
-        // ∫ c p dc of a straight line, by its middle and its slope.
+        // ∫ c p dc of a linear segment, from its midpoint and slope.
         const double a = table.values[i], b = table.values[i + 1], wide = table.cosine(i) - table.cosine(i + 1);
         const double middle = 0.5 * (table.cosine(i) + table.cosine(i + 1));
         sum += circle * wide * (0.5 * (a + b) * middle + (a - b) * wide / 12);
@@ -125,7 +125,7 @@ double sampled_cosine(const PhaseTable& table, double u) {
     const size_t i = std::min(static_cast<size_t>(std::max<std::ptrdiff_t>(after - table.before.begin() - 1, 0)), last);
     const double inside = table.before[i + 1] - table.before[i];
     const double r = inside > 0 ? std::clamp((share - table.before[i]) / inside, 0.0, 1.0) : 0.5;
-    // The light of a straight line up to a fraction of it: a x + (b - a) x² / 2 = r (a + b) / 2.
+    // Invert the CDF of a linear segment: a x + (b - a) x² / 2 = r (a + b) / 2.
     const double a = table.values[i], b = table.values[i + 1], root = std::sqrt(a * a + r * (b * b - a * a));
     const double x = a + root > 0 ? std::min(r * (a + b) / (a + root), 1.0) : r;
     return table.cosine(i) + x * (table.cosine(i + 1) - table.cosine(i));
@@ -145,7 +145,7 @@ double narrowness(const PhaseTable& table) {
         const float ahead = table.values[i], back = table.values[last - i];
         if (ahead < 0.5f * table.values[0] || back < 0.5f * table.values[last]) break;
     }
-    // A lobe falls to half at θ = 0.77 (1 - g), for g near 1.
+    // An HG lobe falls to half its peak at θ = 0.77 (1 - g), for g near 1.
     const double angle = std::acos(table.cosine(i));
     return std::clamp(1 - angle / 0.77, 0.0, 0.999);
 }

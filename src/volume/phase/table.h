@@ -1,5 +1,5 @@
-// Phase functions given by numbers: at angles, or as a Legendre series. Stored at cosines where a value is found
-// without a search, and linear in the cosine between them.
+// Tabulated phase functions, given at angles or as a Legendre series. Stored at cosines that allow lookup without a
+// search, with linear interpolation in the cosine.
 #pragma once
 #include "base/math.h"
 
@@ -8,46 +8,46 @@
 #include <vector>
 
 namespace tyndall {
-// Values in 1/sr at 2·half + 1 cosines from straight on to straight back: 1 - (i/half)² up to the middle, mirrored
-// beyond, so about even in the angle and finest at both ends.
+// Values in 1/sr at 2·half + 1 cosines from forward to backward: 1 - (i/half)² for the first half and mirrored for the
+// second, which is roughly uniform in the angle and finest at both ends.
 struct PhaseTable {
     int half = 0;
     std::vector<float> values;
-    std::vector<double> before; // share of the light at larger cosines, of each
+    std::vector<double> before; // per entry: fraction of the light at larger cosines
 
     double cosine(size_t i) const;
     bool empty() const { return values.empty(); }
 };
 
-// What was wrong with the numbers, and has been mended.
+// Corrections made to the input.
 struct PhaseTableNotes {
-    double integral = 1; // over the sphere, as given; the table's is 1
-    double negative = 0; // share of the light that was below 0, and is 0 now: of a series that was cut
-    double kept = 1;     // of the integral: others lie between the table's cosines
+    double integral = 1; // over the sphere, of the input; the table's is 1
+    double negative = 0; // share of the light that was negative and is clamped to 0, as in truncated series
+    double kept = 1;     // ratio of the table's integral to the input's; entries between the table's cosines are lost
 };
 
 struct PhaseEntry {
-    double angle, value; // degrees between light and scattered light; any unit
+    double angle, value; // scattering angle in degrees; value in any unit
 };
 
-// Of at least two entries from 0 to 180 degrees in ascending order, none below 0 and not all 0.
+// From at least two entries, ascending from 0 to 180 degrees, with nonnegative values that are not all 0.
 PhaseTable make_table(std::span<const PhaseEntry> entries, PhaseTableNotes& notes);
 
-// Σ coefficient[l] P_l(c) / 4π, the factor 2 l + 1 inside the coefficients (Chandrasekhar's; of SHDOM and its kin).
-// The first is above 0.
+// Σ coefficient[l] P_l(c) / 4π, with the factor 2 l + 1 included in the coefficients (Chandrasekhar's convention, used
+// by SHDOM). The first must be positive.
 PhaseTable make_table(std::span<const double> coefficients, PhaseTableNotes& notes);
 
-// value(cosine), in any unit, of a form that has no detail finer than an angle in radians.
+// From value(cosine), in any unit, with no detail finer than the angle `finest` in radians.
 PhaseTable make_table(const std::function<double(double)>& value, double finest);
 
 double mean_cosine(const PhaseTable& table);
-double sampled_cosine(const PhaseTable& table, double u); // as of a lobe
+double sampled_cosine(const PhaseTable& table, double u); // as for a lobe
 double share_below(const PhaseTable& table, double cosine);
 
-// |g| of the Henyey-Greenstein lobe as narrow as the narrower of the ends.
+// |g| of the Henyey-Greenstein lobe as narrow as the narrower of the forward and backward peaks.
 double narrowness(const PhaseTable& table);
 
-// Value in 1/sr, to the rounding of T.
+// Value in 1/sr, in the precision of T.
 template<class T> T table_value(const PhaseTable& table, T cosine) {
     const T half = static_cast<T>(table.half), square = half * half * std::max<T>(0, 1 - std::abs(cosine));
     const int k = std::min(static_cast<int>(std::sqrt(square)), table.half - 1), last = 2 * table.half;

@@ -1,12 +1,13 @@
-// A phase function seen through discs instead of points.
+// Phase functions averaged over discs, as for lights of finite angular size.
 #include "volume/phase.h"
 
 #include <numbers>
 
 namespace tyndall {
 namespace {
-// Mean over a disc whose middle lies at an angle from the axis, straight on or (side -1) straight back: ring by ring
-// around that, each by the arc of it that lies in the disc. Rings are finest at the axis, where lobes are narrow.
+// Mean over a disc whose center lies at `angle` from the forward axis (side 1) or the backward axis (side -1): sums
+// rings around that axis, each weighted by its arc inside the disc. Rings are finest near the axis, where lobes are
+// narrow.
 double mean_over_disc(const PhaseShape& shape, double side, double angle, double radius) {
     constexpr int rings = 200;
     const double low = std::max(angle - radius, 0.0), high = angle + radius;

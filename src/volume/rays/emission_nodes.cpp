@@ -6,10 +6,10 @@
 
 namespace tyndall {
 namespace {
-constexpr float not_asked = 1e-6f;  // of the brightest: bricks that are no brighter are left out
-constexpr float dark_share = 1e-3f; // of a cell's brightest corner: darker ones ask for no more parts
-constexpr float dim = 1e-4f;        // of the brightest: cells that are no brighter have one part
-constexpr float change = 1.5f;      // of the light's logarithm, across a part
+constexpr float not_asked = 1e-6f;  // relative to the brightest; bricks below are skipped
+constexpr float dark_share = 1e-3f; // relative to a cell's brightest corner; darker corners are clamped to this
+constexpr float dim = 1e-4f;        // relative to the brightest; cells below get one part
+constexpr float change = 1.5f;      // maximum change of log luminance across one part
 
 int parts_of(const EmissionCell& cell) {
     if (cell.most <= dim) return 1;
@@ -31,7 +31,7 @@ void find_emission_cells(const BrickPool& luminance, const Ray& ray, float faint
             if (!values) return add({from, to, even, even});
             const ivec3 in = cell - first;
             const uint16_t* corner = values + (in.x * 9 + in.y) * 9 + in.z;
-            uint16_t least = 0xffff, most = 0; // halves keep the order of what they stand for
+            uint16_t least = 0xffff, most = 0; // the bit patterns of halves sort like their values
             for (const int i : {0, 1, 9, 10, 81, 82, 90, 91})
                 least = std::min(least, corner[i]), most = std::max(most, corner[i]);
             add({from, to, float_from_half(most), float_from_half(least)});

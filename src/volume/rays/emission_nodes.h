@@ -1,4 +1,4 @@
-// Where the light of a field is asked for along a ray: voxel cell by voxel cell, free of the steps of whoever asks.
+// Quadrature nodes for field emission along a ray, placed per voxel cell, independent of ray-marching steps.
 #pragma once
 #include "base/math.h"
 
@@ -7,23 +7,23 @@
 namespace tyndall {
 struct BrickPool;
 
-// A stretch of the ray within a voxel cell.
+// A segment of the ray within a voxel cell.
 struct EmissionCell {
     double low = 0, high = 0;
-    float most = 0, least = 0; // luminance at the cell's corners, its maximum 1: between them it is no brighter
+    float most = 0, least = 0; // range of the luminance at the cell's corners, relative to the field's maximum of 1
 };
 
-// Calls add(cell) for the cells of a ray on 0..t_max in order, in bricks brighter than `faint` anywhere.
+// Calls add(cell) in order for the cells on 0..t_max, in bricks whose maximum exceeds `faint`.
 void find_emission_cells(const BrickPool& luminance, const Ray& ray, float faint,
                          const std::function<void(const EmissionCell&)>& add);
 
-// A place on the ray and the length that it stands for, metres.
+// A point on the ray and the length it represents, meters.
 struct EmissionNode {
     float t = 0, length = 0;
 };
 
-// Calls add(node) for Gauss points in every cell, ascending, more in cells across which the light changes by much.
-// Light that falls by a factor of e^12 across a cell is off by less than 2 %, by e^2 .3 %; left out are bricks a
-// millionth as bright as the brightest.
+// Calls add(node) for Gauss points in every cell, ascending, with more points where the light varies strongly. The
+// error is below 2 % for light that falls by a factor of e^12 across a cell, and 0.3 % for e^2. Skips bricks below a
+// millionth of the brightest.
 void find_emission_nodes(const BrickPool& luminance, const Ray& ray, const std::function<void(EmissionNode)>& add);
 }

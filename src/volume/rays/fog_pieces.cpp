@@ -14,7 +14,7 @@ struct Linear {
     double a, b; // a + b·s
 };
 
-// Trilinear interpolation with weights that are linear in s, multiplied out.
+// Expands trilinear interpolation, with weights linear in s, into cubic coefficients.
 void cubic_in_cell(const uint16_t* corner, const Linear& x, const Linear& y, const Linear& z, double* c) {
     double v[8];
     for (int i = 0; i < 8; ++i) v[i] = float_from_half(corner[(i >> 2) * 81 + ((i >> 1) & 1) * 9 + (i & 1)]);
@@ -71,7 +71,7 @@ void append_height_density(const Ray& ray, const Medium& medium, Interval<double
     append(inside.low, base), append(base, inside.high);
 }
 
-// Next stretch on which no medium changes its piece; `at` is where the last one ended.
+// The next interval on which every medium stays within one piece; `at` is the end of the previous one.
 Interval<double> next_stretch(const FogPieces& fog, const std::vector<int>& current, double at) {
     Interval<double> next{none, none};
     const auto begin = [&](size_t m) {
@@ -85,7 +85,7 @@ Interval<double> next_stretch(const FogPieces& fog, const std::vector<int>& curr
     return next;
 }
 
-// Lays the pieces of all media over each other.
+// Merges the pieces of all media.
 void merge_media(double max_depth, FogPieces& fog) {
     static thread_local std::vector<int> current;
     current.assign(fog.media, 0);
@@ -115,13 +115,13 @@ void merge_media(double max_depth, FogPieces& fog) {
 double DensityPiece::density(double t) const {
     const double s = t - low;
     if (exponential) return std::exp(c[0] + c[1] * s);
-    return std::max(c[0] + s * (c[1] + s * (c[2] + s * c[3])), 0.0); // rounding may fall below
+    return std::max(c[0] + s * (c[1] + s * (c[2] + s * c[3])), 0.0); // rounding may give negative values
 }
 
 double DensityPiece::column(double t) const {
     const double s = t - low;
     if (!exponential) return s * (c[0] + s * (c[1] / 2 + s * (c[2] / 3 + s * (c[3] / 4))));
-    // Counted from the denser end, so that nothing overflows: e^d (1 - e^-|c1 s|) / |c1|.
+    // Evaluated from the denser end to avoid overflow: e^d (1 - e^-|c1 s|) / |c1|.
     const double change = std::abs(c[1] * s), densest = std::exp(std::max(c[0], c[0] + c[1] * s));
     return change == 0 ? densest * s : densest * s * (-std::expm1(-change) / change);
 }

@@ -1,11 +1,11 @@
-// The end of unbounded fog, found by doubling on its closed-form optical depth.
+// Finds the effective end of unbounded fog by doubling, using its analytic optical depth.
 #include "volume/rays/fog_reach.h"
 
 #include "volume/medium.h"
 
 namespace tyndall {
 namespace {
-constexpr float horizon = 1e12f;    // metres; no ray goes further
+constexpr float horizon = 1e12f;    // meters; no ray goes farther
 constexpr double opaque_depth = 20; // e^-20 = 2e-9
 constexpr double negligible_depth = 1e-6;
 

@@ -1,4 +1,4 @@
-// Where along a ray there is fog to ask for.
+// Where along a ray the fog is.
 #pragma once
 #include "base/math.h"
 
@@ -7,10 +7,10 @@
 namespace tyndall {
 struct Medium;
 
-// Distance beyond which the media have no effect worth computing, never infinite; 0 = no fog on this ray.
-// Bounded media reach to their bounds; others to optical depth 20 (a share of 2e-9 passes) or until 1e-6 is left.
+// Distance beyond which the effect of the media is negligible, always finite; 0 = no fog on this ray. Bounded media
+// reach to their bounds; others to optical depth 20 (transmittance 2e-9) or until the remaining optical depth is 1e-6.
 float fog_reach(std::span<const Medium> media, const Ray& ray);
 
-// The stretch of a ray from first to last fog; empty without any, endless where a medium has no bounds.
+// The interval from the first to the last fog on a ray; empty if there is none, infinite if a medium is unbounded.
 Interval<float> fog_stretch(std::span<const Medium> media, const Ray& ray);
 }

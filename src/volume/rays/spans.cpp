@@ -5,12 +5,13 @@
 
 namespace tyndall {
 namespace {
-constexpr double farthest = 1e12; // metres; fog without end is cut here
+constexpr double farthest = 1e12; // meters; unbounded fog ends here
 constexpr double ln2 = 0.69314718055994530942;
-constexpr int highest_band = 24; // density 2^-24 of the ground's; above it height fog is left out
+constexpr int highest_band = 24; // density 2^-24 of that at the base; height fog above is ignored
 
-// Calls visit(stretch, largest density, smallest density) along homogeneous or height fog. Height fog comes in bands
-// over which its density halves: band k lies (k-1)·ln 2 to k·ln 2 fall-offs above the base, band 0 below it.
+// Calls visit(interval, largest density, smallest density) along homogeneous or height fog. Height fog is split into
+// bands over which its density halves: band k spans (k-1)·ln 2 to k·ln 2 falloff lengths above the base, band 0 lies
+// below it.
 template<class Visit> void walk_bands(const Ray& ray, const Medium& medium, const Visit& visit) {
     const double t_max = std::min<double>(ray.t_max, farthest);
     const Interval<double> inside =
@@ -39,8 +40,8 @@ template<class Visit> void walk_bands(const Ray& ray, const Medium& medium, cons
     }
 }
 
-// A stretch in the box of a grid, and where on it density has risen from 0 at the face of entry, and begins to fall
-// again to the face of exit: it does so within a voxel.
+// The interval inside a grid's box, and the part `within` it without the first and last voxel, in which density rises
+// from 0 at the entry face and falls to 0 at the exit face.
 struct GridStretch {
     Interval<double> whole, within;
 };
@@ -83,8 +84,8 @@ void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, cons
     if (whole.empty()) return;
     const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = grey_extinction(medium.optics);
 
-    // Where no brick can ask for shorter steps than the rule's longest, one span says the same as all bricks, but for
-    // the few that are empty: a step there costs less than looking for them on every ray.
+    // If no brick needs steps shorter than the rule's longest, one span replaces all bricks. A step in the few empty
+    // ones costs less than finding them on every ray.
     const double highest = extinction * pool.highest, rate = std::max(varied_rate, highest / rule.optical_depth);
     const bool even = pool.crowded && rate * rule.length <= 1;
     const double longest_step = 1 / std::max(rate, 1.0 / rule.length);
@@ -134,7 +135,7 @@ void append_near_spans(const Ray& ray, vec3 point, double closest, double ratio,
     const double inner = std::max(distance, closest);
     if (!(ratio > 0) || ratio * inner >= longest) return;
 
-    // Shells of doubling radius; the rate of a shell is what its inner radius asks for.
+    // Shells of doubling radius; the rate of a shell follows from its inner radius.
     int shells = 1;
     while (ratio * std::ldexp(inner, shells) < longest && shells < 64) ++shells;
     const auto reach = [&](int shell) {
@@ -152,7 +153,7 @@ void overlay(const std::vector<Span>& first, const std::vector<Span>& second, bo
     constexpr double none = std::numeric_limits<double>::infinity();
     double at = -none;
     for (size_t i = 0, j = 0; i < first.size() || (keep_second && j < second.size());) {
-        // The next piece begins where either list goes on, and ends at the next border of either.
+        // The next piece begins where either list continues and ends at the next boundary of either.
         const double a = i < first.size() ? std::max(first[i].low, at) : none;
         const double b = j < second.size() ? std::max(second[j].low, at) : none;
         const double low = std::min(a, b);

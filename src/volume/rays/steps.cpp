@@ -7,13 +7,13 @@
 
 namespace tyndall {
 namespace {
-// Spans that touch and are not apart: steps run through them without regard to their borders.
+// Adjacent spans that are not `apart`: steps may cross the boundaries between them.
 struct Run {
     size_t first = 0, end = 0;
-    double cost = 0; // steps it takes, a real number
+    double cost = 0; // number of steps it needs, not rounded
 };
 
-// Steps per metre that a rule asks for, made ready for many spans.
+// Steps per meter required by a rule, precomputed for many spans.
 struct Rates {
     double by_length, by_depth;
 
@@ -21,10 +21,10 @@ struct Rates {
     double of(const Span& span) const { return std::max({by_length, span.rate, span.extinction * by_depth}); }
 };
 
-// Reused from ray to ray: nothing is allocated once the longest ray has been seen.
+// Reused from ray to ray, so allocation stops after the longest ray.
 struct Scratch {
     std::vector<Span> spans, more, merged;
-    std::vector<double> rates; // steps per metre of each span
+    std::vector<double> rates; // steps per meter of each span
     std::vector<Run> runs;
 };
 
@@ -52,7 +52,7 @@ void refine(Scratch& scratch) {
     std::swap(scratch.spans, scratch.merged);
 }
 
-// Cuts the spans where a local light or its beam asks for smaller steps.
+// Splits the spans where a local light or its beam requires smaller steps.
 void refine_near(const Ray& ray, const StepRule& rule, const Rates& rates, Scratch& scratch) {
     double lowest = std::numeric_limits<double>::infinity();
     for (const Span& span : scratch.spans) lowest = std::min(lowest, rates.of(span));
@@ -81,8 +81,7 @@ void find_runs(const Rates& rates, Scratch& scratch) {
     }
 }
 
-// As many equal shares of a run's cost as it needs steps. Rounded inputs just above a whole number do not ask for one
-// more.
+// Number of steps of a run. A cost that exceeds an integer only by rounding does not add a step.
 double wanted_steps(const Run& run) { return std::max(1.0, std::ceil(run.cost * (1 - 1e-6))); }
 
 void append_step(double low, double high, std::vector<Step>& steps) {
@@ -114,7 +113,7 @@ void place_run(const Scratch& scratch, const Run& run, int count, std::vector<St
     steps.resize(static_cast<size_t>(step - steps.data()));
 }
 
-// More runs than steps: each step spans several runs and what lies between them.
+// More runs than steps: each step covers several runs and the gaps between them.
 void place_joined(const Scratch& scratch, size_t most, std::vector<Step>& steps) {
     const size_t runs = scratch.runs.size(), share = (runs + most - 1) / most;
     for (size_t i = 0; i < runs; i += share) {

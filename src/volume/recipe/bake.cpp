@@ -37,7 +37,7 @@ Metadata frame_metadata(const FogRecipe& recipe, const std::string& hash, int fr
                       {"tyndall_g", shortest_text(recipe.g)},
                       {"tyndall_seed", std::to_string(recipe.noise.seed)},
                       {"tyndall_settings_hash", hash}};
-    // A loop says what became of speeds that were rounded to whole turns.
+    // For loops, record the speeds after rounding to whole turns.
     if (recipe.period > 0) {
         const auto speed = [&](double asked) {
             return shortest_text(static_cast<float>(turns_per_loop(recipe, asked) / recipe.period));
@@ -55,7 +55,7 @@ const std::string* find(const Metadata& metadata, std::string_view key) {
     return nullptr;
 }
 
-// True when the file is this frame made by these settings, to the last byte.
+// True if the file is an intact bake of this frame with these settings.
 bool is_right(const std::filesystem::path& file, const std::string& hash, int frame) {
     if (!std::filesystem::exists(file)) return false;
     try {
@@ -67,7 +67,7 @@ bool is_right(const std::filesystem::path& file, const std::string& hash, int fr
         std::from_chars(shows->data(), shows->data() + shows->size(), number);
         return number == frame && is_as_written(file);
     } catch (const Error&) {
-        return false; // cut or damaged: made again
+        return false; // truncated or damaged: bake again
     }
 }
 
@@ -87,7 +87,7 @@ std::vector<VdbGridContent> grids_of(const FogRecipe& recipe, const BakeOptions&
     return grids;
 }
 
-// The velocities of a leaf whose temperature is known (null: no fire), by component.
+// Fills the velocity components of a leaf from its temperature (null: no fire).
 void grow_velocity(const Growth& growth, const FogMotion& motion, ivec3 origin, const Leaf* kelvin,
                    std::span<Leaf, 3> leaves) {
     std::array<vec3, 512> points, velocity;
@@ -122,7 +122,7 @@ VdbImage frame_image(const FogRecipe& recipe, double seconds, Metadata metadata,
     return {content, options.write, where};
 }
 
-// Frames that are being written while the next one grows. Few, so that memory stays bounded.
+// Frames written in the background while the next one is generated; few, to bound memory.
 class Writers {
 public:
     Writers(BakeReport& report, Progress& progress)
@@ -130,7 +130,7 @@ public:
 
     void start(std::filesystem::path file, int frame, VdbImage image) {
         while (pending_.size() >= max_) finish_one();
-        // One thread means one: the frame is then written when its turn to finish comes.
+        // With one thread, writing is deferred until the frame is finished.
         const auto when = thread_count() > 1 ? std::launch::async : std::launch::deferred;
         pending_.push_back(std::async(when, [file = std::move(file), frame, image = std::move(image)] {
             image.write(file);

@@ -1,4 +1,5 @@
-// Bakes a recipe to a sequence of VDB files: leaves are packed as they grow, a frame is written while another grows.
+// Bakes a recipe to a sequence of VDB files: leaves are compressed as they are generated, and one frame is written
+// while the next is generated.
 #pragma once
 #include "base/io/progress.h"
 #include "volume/recipe/recipe.h"
@@ -11,9 +12,9 @@
 namespace tyndall {
 struct BakeOptions {
     VdbWriteOptions write;
-    bool velocity = false; // a grid of recipe_velocity() beside the others
-    bool resume = false;   // keep files whose stored settings hash matches and whose voxels read back
-    const std::atomic<bool>* cancel = nullptr; // set from outside: no further frame is begun
+    bool velocity = false;                     // add a grid of recipe_velocity()
+    bool resume = false;                       // keep intact files whose stored settings hash matches
+    const std::atomic<bool>* cancel = nullptr; // set by the caller: no further frame is started
 };
 
 struct BakeReport {
@@ -23,7 +24,7 @@ struct BakeReport {
     uint64_t voxels = 0, bytes = 0;
 };
 
-// `pattern` needs a frame token for more than one frame. Frame f shows the time f / frame_rate. Throws Error.
+// `pattern` needs a frame token for more than one frame. Frame f is at time f / frame_rate. Throws Error.
 BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::vector<int>& frames,
                 const BakeOptions& options, Progress& progress);
 }

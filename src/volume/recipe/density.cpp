@@ -12,7 +12,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// `values_at` of sixteen points at a time, which are relative to the field's origin.
+// Calls values_at() for sixteen points at a time, relative to the field's origin.
 template<class ValuesAt>
 void for_points(const FogField& field, size_t count, const float* x, const float* y, const float* z, float* results,
                 const ValuesAt& values_at) {

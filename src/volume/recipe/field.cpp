@@ -6,20 +6,20 @@ namespace tyndall {
 namespace {
 constexpr uint32_t swirl_salt = 0x517cc1b7u, second_layer_salt = 0x2545f491u, fire_salt = 0x9e3779b9u;
 
-// 0 <= phase < 1 of a repeating recipe.
+// Phase of a looping recipe, 0 <= phase < 1.
 double loop_phase(const FogRecipe& recipe, double seconds) {
     return wrapped_turn(std::fmod(seconds, recipe.period) / recipe.period);
 }
 
-// Turns done by a moment, 0 <= turn < 1.
+// Rotation of the gradients at a time, 0 <= turn < 1.
 double turn_at(const FogRecipe& recipe, double seconds, double speed) {
     if (recipe.period <= 0) return wrapped_turn(speed * seconds);
     return wrapped_turn(turns_per_loop(recipe, speed) * loop_phase(recipe, seconds));
 }
 
-// Noise that evolves and is advected by a wind, metres per second.
-// Pure carriage repeats only if the fog repeats in space, every wind · period metres. So two unlike layers are
-// throughput half a period apart, each at the wind's own speed and without weight at the moment it jumps back.
+// Layers of noise that evolves and is advected by a wind in meters per second. Pure advection loops only if the fog
+// repeats in space every wind · period meters. Loops therefore crossfade two independent layers half a period apart,
+// each advected at the wind's speed and with zero weight when it jumps back.
 std::vector<NoiseLayer> layers(const FogRecipe& recipe, double evolve, dvec3 wind, double seconds) {
     const double turn = turn_at(recipe, seconds, evolve);
     if (wind == dvec3(0)) return {{.turn = turn}};
@@ -42,7 +42,7 @@ void add_swirl(FogField& field, const FogRecipe& recipe, double seconds) {
     const double frequency = 1 / double{recipe.swirl_scale};
     field.swirl = noise_octave(frequency, recipe.noise.seed ^ swirl_salt, turn_at(recipe, seconds, recipe.swirl_speed),
                                field.origin);
-    // Each of the curl's three components is a difference of two slopes.
+    // Each of the curl's three components is a difference of two partial derivatives.
     field.swirl_gain = recipe.swirl / (std::sqrt(6.0f) * noise_slope_spread);
     field.swirl_reach = std::abs(field.swirl_gain) * 2 * noise_slope_peak;
     field.swirl_stretch =
@@ -57,7 +57,7 @@ void add_fire(FogField& field, const FogRecipe& recipe, const FireRecipe& fire, 
     f.edge = fire.edge, f.span = fire.core - fire.edge, f.air = fire.air;
     f.soot = fire.soot;
 
-    // Lattices are even: noise that is taller than wide is even noise of lower coordinates.
+    // Lattices are isotropic: noise stretched vertically is isotropic noise of scaled y coordinates.
     const double lower = 1 / double{fire.stretch};
     FractalNoise noise = fire.noise;
     noise.seed ^= fire_salt;

@@ -1,4 +1,4 @@
-// A fire in a fog field at sixteen points, and which of sixteen boxes may burn; included by kernel files only.
+// Fire in a fog field at sixteen points, and which of sixteen boxes may contain fire; included by kernel files only.
 #if defined(TYNDALL_VOLUME_RECIPE_FIRE_KERNEL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_RECIPE_FIRE_KERNEL_H
 #undef TYNDALL_VOLUME_RECIPE_FIRE_KERNEL_H
@@ -14,7 +14,7 @@ struct Burning {
     Floats density, kelvin;
 };
 
-// Share of the swirl that reaches flames at a height, and what follows of the flicker.
+// Share of the swirl that acts on flames at a height, and the resulting flicker.
 HWY_INLINE Floats fire_onset(const FireField& fire, const Floats& y) {
     return smoothstep01((y - fire.base.y) * (fire.per_height / flicker_full));
 }
@@ -22,7 +22,7 @@ HWY_INLINE Floats flicker_at(const FireField& fire, const Floats& y) {
     return fire.flicker * (flicker_at_base + (1 - flicker_at_base) * fire_onset(fire, y));
 }
 
-// Heat without flicker: falls with the distance from the base, upwards and to the sides.
+// Heat without flicker: falls off with the distance from the base.
 HWY_INLINE Floats still_heat(const FireField& fire, const Vec3s& p) {
     const Floats x = (p.x - fire.base.x) * fire.per_radius, z = (p.z - fire.base.z) * fire.per_radius;
     const Floats above = p.y - fire.base.y, h = max(above, 0.0f) * fire.per_height;
@@ -30,7 +30,7 @@ HWY_INLINE Floats still_heat(const FireField& fire, const Vec3s& p) {
     return 1.0f - h * h - below * below - (x * x + z * z) * (wider * wider);
 }
 
-// Heat where the swirl brings it from; above 0 only where there is flame.
+// Heat at the displaced position; above 0 only where there is flame.
 HWY_INLINE Floats fire_heat(const FireField& fire, const Vec3s& p, const Vec3s& displacement, int& finished) {
     const Vec3s q = fused(displacement, fire_onset(fire, p.y), p);
     const Floats still = still_heat(fire, q);
@@ -43,7 +43,7 @@ HWY_INLINE Floats fire_heat(const FireField& fire, const Vec3s& p, const Vec3s& 
     return still + gain * noise;
 }
 
-// What scales the smoke: nothing at the base, all of it within the plume from half a flame height further up.
+// Scale of the smoke: 0 below the plume's start, 1 on its axis from half a flame height higher on.
 HWY_INLINE Floats plume(const FireField& fire, const Vec3s& nearest, const Floats& highest) {
     const Floats x = nearest.x - fire.base.x, z = nearest.z - fire.base.z;
     const Floats radius = fire.plume_radius + fire.plume_spread * max(highest - fire.base.y, 0.0f);
@@ -55,7 +55,7 @@ HWY_INLINE Mask16 inside_bounds(const FogField& field, const Vec3s& p) {
     return (abs(p.x) <= field.half_size.x) & (abs(p.y) <= field.half_size.y) & (abs(p.z) <= field.half_size.z);
 }
 
-// Flame and smoke at sixteen points.
+// Density and temperature of flame and smoke at sixteen points.
 HWY_INLINE Burning fire_fog(const FogField& field, const Vec3s& p, int& finished) {
     const FireField& fire = field.fire;
     const Vec3s moved = field.swirl_gain == 0 ? splat(vec3(0)) : displacement(field, p);
@@ -80,7 +80,7 @@ HWY_INLINE Burning fire_fog(const FogField& field, const Vec3s& p, int& finished
     return result;
 }
 
-// True where a box can hold flame or smoke: never false for one that does.
+// True for boxes that may contain flame or smoke (conservative).
 HWY_INLINE Mask16 may_hold_fire(const FogField& field, const Vec3s& low, const Vec3s& high) {
     const FireField& fire = field.fire;
     const auto nearest = [&](const Vec3s& from, const Vec3s& to) {

@@ -1,4 +1,4 @@
-// From bounds to leaves: a grid, the leaves that can hold fog, their values.
+// Builds the leaves of a recipe: the voxel grid, the leaves that may contain fog, and their values.
 #include "base/error.h"
 #include "base/parallel.h"
 #include "volume/bricks/voxel_mask.h"
@@ -15,7 +15,7 @@ namespace tyndall {
 namespace {
 struct VoxelGrid {
     ivec3 size{0};                        // voxels
-    std::array<std::vector<float>, 3> at; // coordinates of voxel centres relative to the middle; padded to whole leaves
+    std::array<std::vector<float>, 3> at; // coordinates of voxel centers relative to the center; padded to whole leaves
 };
 
 VoxelGrid voxel_grid(const FogRecipe& recipe) {
@@ -31,7 +31,7 @@ VoxelGrid voxel_grid(const FogRecipe& recipe) {
     VoxelGrid grid;
     grid.size = ivec3(count);
     for (int axis = 0; axis < 3; ++axis) {
-        // Voxels that only fill up the last leaf lie far outside.
+        // Padding voxels of the last leaf are placed far outside.
         constexpr float far_away = 1e9f;
         grid.at[axis].assign((grid.size[axis] + 7) / 8 * 8, far_away);
         for (int i = 0; i < grid.size[axis]; ++i)
@@ -40,7 +40,7 @@ VoxelGrid voxel_grid(const FogRecipe& recipe) {
     return grid;
 }
 
-// The cubes of `width` voxels at `origins` that can hold fog.
+// The cubes of `width` voxels at `origins` that may contain fog.
 std::vector<ivec3> cubes_with_fog(const FogField& field, const VoxelGrid& grid, const std::vector<ivec3>& origins,
                                   int width) {
     std::vector<ivec3> result;
@@ -59,7 +59,7 @@ std::vector<ivec3> cubes_with_fog(const FogField& field, const VoxelGrid& grid, 
     return result;
 }
 
-// The cubes of `width` voxels that lie, at least in part, between low and high.
+// Appends the cubes of `width` voxels that overlap low..high.
 void add_cubes(std::vector<ivec3>& cubes, ivec3 low, ivec3 high, int width) {
     for (int x = low.x; x < high.x; x += width)
         for (int y = low.y; y < high.y; y += width)
@@ -68,7 +68,7 @@ void add_cubes(std::vector<ivec3>& cubes, ivec3 low, ivec3 high, int width) {
 
 bool before(ivec3 a, ivec3 b) { return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z; }
 
-// Leaves that can hold fog, found from coarse to fine: blocks of 64³ voxels in parallel, cubes of 16³, leaves of 8³.
+// Finds leaves that may contain fog from coarse to fine: blocks of 64³ voxels in parallel, cubes of 16³, leaves of 8³.
 std::vector<ivec3> leaves_to_try(const FogField& field, const VoxelGrid& grid) {
     constexpr int block_width = 64, cube_width = 16;
     std::vector<ivec3> blocks;
@@ -87,7 +87,7 @@ std::vector<ivec3> leaves_to_try(const FogField& field, const VoxelGrid& grid) {
     return result;
 }
 
-// A box of voxels, both ends included; high < low = none.
+// A box of voxels, inclusive; high < low = empty.
 struct ActiveBox {
     ivec3 low{std::numeric_limits<int>::max()}, high{std::numeric_limits<int>::min()};
 
@@ -118,12 +118,12 @@ int grow_leaf(const Growth& growth, size_t number, Leaf& density, Leaf* kelvin) 
 }
 
 namespace {
-// Every leaf that `grow_one` does not leave empty; it returns how many voxels needed all octaves.
+// All nonempty leaves. grow_one(number, leaf) fills one and returns how many voxels needed all octaves.
 template<class GrowOne> SparseVolume grown(const Growth& growth, const GrowOne& grow_one, GrowReport* report) {
     SparseVolume volume;
     volume.index_to_world = growth.index_to_world;
 
-    // Filled in place, then closed up over the leaves that turned out empty.
+    // Fill in place, then compact to remove empty leaves.
     const size_t count = growth.origins.size();
     volume.leaves.reserve(count);
     for (size_t i = 0; i < count; ++i) volume.leaves.emplace_back(Unfilled{});

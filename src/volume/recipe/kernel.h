@@ -1,4 +1,4 @@
-// Density of a fog field at sixteen points, and which of sixteen boxes can hold fog; included by kernel files only.
+// Density of a fog field at sixteen points, and which of sixteen boxes may contain fog; included by kernel files only.
 #if defined(TYNDALL_VOLUME_RECIPE_KERNEL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_VOLUME_RECIPE_KERNEL_H
 #undef TYNDALL_VOLUME_RECIPE_KERNEL_H
@@ -21,7 +21,7 @@ HWY_INLINE Floats smoothstep01(const Floats& x) {
     return t * t * (3.0f - 2.0f * t);
 }
 
-// 0 at the centre of the shape, 1 on its surface.
+// Squared normalized distance: 0 at the center of the shape, 1 on its surface.
 HWY_INLINE Floats squared_shape_distance(const FogField& field, const Vec3s& p) {
     const auto along = [&](const Floats& x, int axis) {
         const Floats d = x - field.shape_center[axis];
@@ -31,7 +31,7 @@ HWY_INLINE Floats squared_shape_distance(const FogField& field, const Vec3s& p) 
     return along(p.x, 0) + along(p.y, 1) + along(p.z, 2);
 }
 
-// What scales the density whatever the noise says: bounds, border, height, and nothing beyond the shape.
+// Density scale independent of the noise: bounds, border, height, and 0 outside the shape.
 HWY_INLINE Floats envelope(const FogField& field, const Vec3s& p, const Floats& height, const Floats& shape_distance) {
     Floats result = 1.0f;
     const auto fade_side = [&](const Floats& x, int axis) {
@@ -45,7 +45,7 @@ HWY_INLINE Floats envelope(const FogField& field, const Vec3s& p, const Floats& 
     return result;
 }
 
-// The noise above which there is fog.
+// The noise value above which there is fog.
 HWY_INLINE Floats needed_noise(const FogField& field, const Floats& shape_distance) {
     const Floats needed = 2 * field.threshold - 1;
     if (field.shape == FogShape::box) return needed;
@@ -61,7 +61,7 @@ HWY_INLINE Vec3s displacement(const FogField& field, const Vec3s& p) {
     return result * field.swirl_gain;
 }
 
-// Sums octaves until no lane can reach what it needs; then a value below every need.
+// Sums octaves; stops early with a value below every threshold once no lane can still exceed `needed`.
 HWY_INLINE FloatVec sum_of_octaves(const NoiseSum& sum, FloatVec x, FloatVec y, FloatVec z, FloatVec needed,
                                    int& finished) {
     const FloatTag tag;
@@ -74,7 +74,7 @@ HWY_INLINE FloatVec sum_of_octaves(const NoiseSum& sum, FloatVec x, FloatVec y, 
     return total;
 }
 
-// The same along a column, for the x whose `needed` some lane can reach.
+// sum_of_octaves() along a column of eight x, each dropped once no lane can still exceed its `needed`.
 HWY_INLINE void sums_along_column(const NoiseSum& sum, const float* x, FloatVec y, FloatVec z, const FloatVec* needed,
                                   FloatVec* totals, int& finished) {
     const FloatTag tag;
@@ -97,9 +97,9 @@ HWY_INLINE void sums_along_column(const NoiseSum& sum, const float* x, FloatVec 
     finished += static_cast<int>(lane_step) * std::popcount(open);
 }
 
-// What the noise is weighed against.
+// Density scale and noise threshold at sixteen points.
 struct Weighing {
-    Floats scale, needed, wanted; // wanted: infinity where there is nothing to scale
+    Floats scale, needed, wanted; // wanted: `needed`, or infinity where the scale is negligible
     bool open = false;
 };
 HWY_INLINE Weighing weighing(const FogField& field, const Vec3s& p) {
@@ -132,7 +132,7 @@ HWY_INLINE Floats fog_density(const FogField& field, const Vec3s& p, int& finish
     return density_of(field, noise, weigh);
 }
 
-// The same of still coordinates, at eight x.
+// fog_density() without swirl, at eight x along a column.
 HWY_INLINE void fog_column(const FogField& field, const float* x, const Floats& y, const Floats& z, Floats* densities,
                            int& finished) {
     Weighing weigh[8];
@@ -147,12 +147,13 @@ HWY_INLINE void fog_column(const FogField& field, const float* x, const Floats& 
     for (int i = 0; i < 8; ++i) densities[i] = weigh[i].open ? density_of(field, noise[i], weigh[i]) : 0.0f;
 }
 
-// True where a box can hold fog: never false for one that does. Boxes are those of the points, both ends included.
+// True for boxes that may contain fog (conservative). Boxes bound the sample points, inclusive.
 HWY_INLINE Mask16 may_hold_fog(const FogField& field, const Vec3s& low, const Vec3s& high) {
     const auto nearest = [&](vec3 to) {
         return Vec3s{min(max(to.x, low.x), high.x), min(max(to.y, low.y), high.y), min(max(to.z, low.z), high.z)};
     };
-    // Everything but the noise only falls with the distance from some point: its largest value is at the nearest one.
+    // All terms except the noise decrease with the distance from some point: each is largest at the box's nearest
+    // point.
     const Floats distance =
         field.shape == FogShape::box ? 0.0f : squared_shape_distance(field, nearest(field.shape_center)) * 0.9999f;
     const Floats scale = envelope(field, nearest(vec3(0)), low.y, distance);

@@ -10,14 +10,14 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// Rows of 4 voxels along z, four of them one above the other, at an x.
+// Stores four rows, adjacent in y, of 4 voxels along z at one x.
 HWY_INLINE void store_rows(const Floats& values, int i, int j, int k, float* leaf) {
     float rows[16];
     store(values, rows);
     for (int row = 0; row < 4; ++row) std::memcpy(leaf + i * 64 + (j + row) * 8 + k, rows + 4 * row, 4 * sizeof(float));
 }
 
-// Vectors of 4×4 voxels in y and z: compact, so that empty ones are many.
+// Packets of 4×4 voxels in y and z: compact, so that many of them are empty.
 int fill_leaf_kernel(const FogField& field, const float* x, const float* y, const float* z, float* values) {
     int finished = 0;
     for (int j = 0; j < 8; j += 4)

@@ -1,19 +1,19 @@
-// The vector kernels that grow a recipe on its voxel grid.
+// SIMD kernels that evaluate a recipe on its voxel grid.
 #pragma once
 #include "volume/recipe/field.h"
 
 #include <span>
 
 namespace tyndall {
-// Fills one leaf whose voxel centres have these coordinates (relative to the field's origin).
-// Returns how many voxels had to be computed to the last octave.
+// Fills one leaf whose voxel centers have these coordinates (relative to the field's origin).
+// Returns how many voxels needed all octaves.
 int fill_leaf(const FogField& field, const float* x, const float* y, const float* z, std::span<float, 512> values);
 
-// The same of a recipe with a fire, and its temperatures.
+// The same for a recipe with a fire, including temperatures.
 int fill_leaf(const FogField& field, const float* x, const float* y, const float* z, std::span<float, 512> values,
               std::span<float, 512> kelvin);
 
-// Sixteen boxes, by axis; the result has a bit for every box that can hold fog.
+// Sixteen boxes, by axis.
 struct FogBoxes {
     float low[3][16], high[3][16];
 };

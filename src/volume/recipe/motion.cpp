@@ -14,20 +14,20 @@ HWY_INLINE Vec3s cross(const Vec3s& a, const Vec3s& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// How far the swirl displaces: in flames as much as has set in at their height.
+// Displacement by the swirl; in flames scaled by fire_onset().
 HWY_INLINE Vec3s swirl_reaching(const FogField& field, const Vec3s& p, const Mask16& flame) {
     const Vec3s moved = displacement(field, p);
     if (!any(flame)) return moved;
     return moved * select(flame, fire_onset(field.fire, p.y), 1.0f);
 }
 
-// A place p + D(p, t) of the noise moves with the advection, so its point moves at (1 + ∇D)⁻¹ (advection - ∂D/∂t).
+// The noise coordinate p + D(p, t) moves with the advection, so p itself moves at (1 + ∇D)⁻¹ (advection - ∂D/∂t).
 HWY_INLINE Vec3s velocity_of(const FogMotion& motion, const Vec3s& p, const Mask16& flame) {
     const auto advection = [&](int axis) { return select(flame, motion.rise[axis], motion.wind[axis]); };
     const Vec3s advected{advection(0), advection(1), advection(2)};
     if (motion.now.swirl_gain == 0) return advected;
 
-    // Slopes by central differences, of a hundredth of a cell.
+    // Derivatives by central differences with a step of a hundredth of a cell.
     const float reach = 0.01f / motion.now.swirl.frequency;
     const auto slope = [&](vec3 axis) {
         const Vec3s high = p + splat(axis * reach), low = p - splat(axis * reach);
@@ -38,7 +38,7 @@ HWY_INLINE Vec3s velocity_of(const FogMotion& motion, const Vec3s& p, const Mask
     const Vec3s drift =
         (swirl_reaching(motion.after, p, flame) - swirl_reaching(motion.before, p, flame)) * (0.5f / motion.step);
 
-    // Cramer's rule; where the swirl folds space no velocity is right, and the plain one stays finite.
+    // Cramer's rule. Where the swirl folds space, no velocity is correct; omit the inverse so that it stays finite.
     const Vec3s right = advected - drift;
     const Floats volume = dot(x, cross(y, z));
     const Mask16 clean = volume > 0.2f;
@@ -70,7 +70,7 @@ HWY_AFTER_NAMESPACE();
 namespace tyndall {
 HWY_EXPORT(fog_velocity_kernel);
 
-// Differences over a hundredth of a turn of the swirl, or of a second.
+// The time step is a hundredth of a turn of the swirl, but at most a hundredth of a second.
 FogMotion fog_motion(const FogRecipe& recipe, double seconds) {
     const double speed =
         recipe.period > 0 ? turns_per_loop(recipe, recipe.swirl_speed) / recipe.period : double{recipe.swirl_speed};

@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-// Bumped when the same recipe comes to mean another fog.
+// Incremented when the same recipe produces different fog.
 constexpr int format_version = 1;
 
 float number(const Json& object, std::string_view key, float otherwise) {
@@ -96,7 +96,7 @@ void read_optics(const Json& optics, FogRecipe& recipe) {
     recipe.g = number(optics, "g", recipe.g);
 }
 
-// What a schema cannot say.
+// Constraints that a schema cannot express.
 void check_bounds(const FogRecipe& recipe, const std::string& file) {
     for (int axis = 0; axis < 3; ++axis)
         if (!(recipe.bounds.low[axis] < recipe.bounds.high[axis]))

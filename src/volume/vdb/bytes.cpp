@@ -66,7 +66,7 @@ void ByteCursor::fill_window() {
 void ByteCursor::read(void* bytes, uint64_t count, std::string_view what) {
     require(count, what);
     auto* to = static_cast<char*>(bytes);
-    if (descriptor_ >= 0 && count > window_bytes) { // more than passes through the window
+    if (descriptor_ >= 0 && count > window_bytes) { // larger than the window: read directly
         read_at(position_, to, count, what);
         position_ += count;
         return;

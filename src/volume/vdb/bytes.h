@@ -1,4 +1,4 @@
-// Bytes of a file, or of a stretch of it already in memory, read forwards with every read checked.
+// Checked forward reading of a file, or of a part of it already in memory.
 #pragma once
 #include <cstdint>
 #include <filesystem>
@@ -9,9 +9,9 @@
 namespace tyndall {
 class ByteCursor {
 public:
-    // Opens a regular file; reads it through a small window. Throws Error (unreadable).
+    // Opens a regular file and reads it through a small buffer. Throws Error (unreadable).
     explicit ByteCursor(const std::filesystem::path& file);
-    // Bytes in memory that lie at `first` in the file that messages speak of.
+    // Reads bytes in memory that start at offset `first` of the file named in messages.
     ByteCursor(std::string where, std::string_view bytes, uint64_t first);
     ~ByteCursor();
     ByteCursor(const ByteCursor&) = delete;
@@ -21,7 +21,7 @@ public:
     uint64_t end() const { return end_; }
     uint64_t left() const { return end_ - position_; }
 
-    // All throw Error (refused) naming `where`, `what` and the byte when the bytes end too early.
+    // All throw Error (refused) naming `where`, `what` and the byte position if the data end too early.
     void read(void* bytes, uint64_t count, std::string_view what);
     void skip(uint64_t count, std::string_view what);
     void seek(uint64_t position, std::string_view what);
@@ -31,10 +31,10 @@ public:
         return result;
     }
     std::string text(uint64_t most, std::string_view what);    // a 32-bit length, then that many bytes
-    std::string bytes(uint64_t count, std::string_view what);  // memory is asked for only when the bytes are there
-    [[noreturn]] void complain(const std::string& what) const; // refuses, adding the byte
+    std::string bytes(uint64_t count, std::string_view what);  // allocates only if that many bytes exist
+    [[noreturn]] void complain(const std::string& what) const; // refuses, adding the byte position
 
-    std::string where; // the file, and the grid being read
+    std::string where; // file and current grid, for messages
 
 private:
     void require(uint64_t count, std::string_view what) const;

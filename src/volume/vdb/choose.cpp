@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-// The grids of a name in file order.
+// The grids with a given name, in file order.
 std::vector<const VdbGridEntry*> grids_named(const VdbDirectory& directory, std::string_view name) {
     std::vector<const VdbGridEntry*> found;
     for (const VdbGridEntry& grid : directory.grids)
@@ -16,7 +16,7 @@ std::vector<const VdbGridEntry*> grids_named(const VdbDirectory& directory, std:
     return found;
 }
 
-// A name, or name[index] when no grid is called so to the letter.
+// The grid by exact name, or else by name[index].
 const VdbGridEntry* grid_called(const VdbDirectory& directory, std::string_view wanted) {
     if (const auto exact = grids_named(directory, wanted); !exact.empty()) return exact.front();
     const size_t open = wanted.rfind('[');

@@ -1,4 +1,4 @@
-// Which grids of a file are meant.
+// Selects the grids of a file that a scene refers to.
 #pragma once
 #include "volume/vdb/prewalk.h"
 
@@ -7,25 +7,25 @@
 #include <vector>
 
 namespace tyndall {
-// The file and the grid, for messages.
+// File and grid, for messages.
 std::string label(const ByteCursor& file, const VdbGridEntry& grid);
 
-// Why a grid cannot be fog; empty when it can. `width`: that of a level set as fog, 0 where none is given.
+// Why a grid cannot be used as fog; empty if it can. `width`: fog width of a level set, 0 if none is given.
 std::string obstacle(const VdbGridEntry& grid, float width = 0);
 
-// What a scene calls a grid: its name, with an index where several have the name or it has none.
+// The key of a grid in scenes: its name, with an index if several share the name or it is empty.
 std::string key_of(const VdbDirectory& directory, const VdbGridEntry& grid);
 
-// What is taken when no grid is named: the first density; else the only one that can be fog and is not called something
-// else, or is alone of class fog volume; null when there is none such.
+// The default if no grid is named: the first usable grid named "density"; else the only usable grid whose name does not
+// suggest another quantity, or the only one of these with class fog volume; else null.
 const VdbGridEntry* fog_of(const VdbDirectory& directory);
 
-// The grid to read as fog, by name or name[index], or fog_of(). Throws Error (refused): an unknown name lists what is
-// there.
+// The grid to read as fog: by name or name[index], or fog_of() if `wanted` is empty. Throws Error (refused), listing
+// the grids for an unknown name.
 const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string& wanted, float width,
                                 const ByteCursor& file);
 
-// Of a colour: the grids of its channels, one where it is a grid of vectors or grey. Throws Error (refused).
+// The grids of a color's channels: a single one for a vector or gray grid. Throws Error (refused).
 std::vector<const VdbGridEntry*> color_grids(const VdbDirectory& directory, std::span<const std::string> names,
                                              const ByteCursor& file);
 }

@@ -17,7 +17,7 @@
 
 namespace tyndall {
 namespace {
-// Library messages can be gigabytes long and out of memory has an exit code of its own: no exception passes as it is.
+// Converts library exceptions: their messages can be gigabytes long, and running out of memory has its own exit code.
 template<class Body> auto guarded(ExitCode code, const std::string& where, const Body& body) {
     try {
         return body();
@@ -30,15 +30,15 @@ template<class Body> auto guarded(ExitCode code, const std::string& where, const
     }
 }
 
-constexpr size_t max_tiles = size_t{1} << 26; // a few bytes in a file can stand for thousands of them
+constexpr size_t max_tiles = size_t{1} << 26; // a few bytes in a file can expand to thousands of tiles
 
 ivec3 point(const openvdb::Coord& coord) { return {coord.x(), coord.y(), coord.z()}; }
 
-// A value as three numbers; of numbers the first alone counts.
+// A value as three numbers; scalars use only the first.
 dvec3 numbers_of(double value) { return {value, 0, 0}; }
 template<class T> dvec3 numbers_of(const openvdb::math::Vec3<T>& value) { return {value[0], value[1], value[2]}; }
 
-// The one value tells active from inactive, whatever the level of the tile.
+// Appends a tile of any level to the active tiles, or to the inactive ones if its value is nonzero.
 template<class Iterator> void append_tile(const Iterator& at, bool active, int component, DecodedTree& result) {
     const openvdb::CoordBBox box = at.getBoundingBox();
     const Tile tile{point(box.min()), point(box.max()), static_cast<float>(numbers_of(at.getValue())[component])};
@@ -57,7 +57,7 @@ template<class Tree> void append_tiles(const Tree& tree, int component, DecodedT
     for (; off; ++off) append_tile(off, false, component, result);
 }
 
-// The tree gives the places of the leaves; their values are decoded in parallel, past the library's tree.
+// The tree gives the positions of the leaves; their values are decoded in parallel, bypassing the library's tree.
 template<class Tree>
 void append_leaves(const Tree& tree, std::string_view bytes, std::span<const uint64_t> begins, const LeafCoding& coding,
                    DecodedTree& result) {
@@ -71,8 +71,8 @@ void append_leaves(const Tree& tree, std::string_view bytes, std::span<const uin
     decode_leaves(bytes, begins, coding, result.leaves, result.active);
 }
 
-// The tree is read from a stream that throws and has no file behind it, so nothing is mapped or loaded late.
-// Grids come from the library's registry: making them here would compile every member of every type of tree.
+// The tree is read from an in-memory stream that throws on errors, so nothing is memory-mapped or loaded lazily. Grids
+// come from the library's registry: creating them here would compile every member of every tree type.
 template<class Grid>
 DecodedTree decoded(std::string_view bytes, const VdbGridEntry& entry, const VdbTreeCounts& counts, LeafCoding coding) {
     openvdb::initialize();
@@ -107,7 +107,7 @@ void fill_tiles(openvdb::FloatTree& tree, const std::vector<Tile>& tiles, bool h
     }
 }
 
-// The leaves that tiles made where they cover one in part.
+// The leaves created by tiles that cover them only in part.
 Leaves leaves_of_tiles(const openvdb::FloatTree& tree) {
     Leaves leaves;
     for (auto node = tree.cbeginLeaf(); node; ++node) {
@@ -117,7 +117,7 @@ Leaves leaves_of_tiles(const openvdb::FloatTree& tree) {
     return leaves;
 }
 
-// Puts leaves into the tree with their masks but without values, which are encoded apart.
+// Adds leaves to the tree with their masks but without values, which are encoded separately.
 template<class Tree> void add_leaves(Tree& tree, std::span<const ivec3> origins, std::span<const VoxelMask> masks) {
     using Node = typename Tree::LeafNodeType;
     size_t added = 0;
@@ -134,7 +134,7 @@ template<class Tree> void add_leaves(Tree& tree, std::span<const ivec3> origins,
     if (tree.leafCount() != added) throw std::runtime_error("two leaves share an origin");
 }
 
-// The leaves of a file in the order of its trees, those included that tiles cover in part.
+// The leaves of a file in tree order, including those that tiles cover only in part.
 struct OrderedLeaves {
     std::vector<ivec3> origins;
     EncodedLeaves encoded;
@@ -154,7 +154,7 @@ OrderedLeaves encode_in_order(const VdbContent& content, const Leaves& more, boo
     return result;
 }
 
-// Scale and translation as such, since some readers know no other map; anything else as a matrix.
+// Uses a ScaleTranslateMap if possible, because some readers support no other; else a matrix.
 openvdb::math::Transform make_transform(const dmat4& matrix) {
     using namespace openvdb::math;
     openvdb::Mat4d rows;
@@ -170,9 +170,9 @@ openvdb::math::Transform make_transform(const dmat4& matrix) {
     return Transform(std::make_shared<ScaleTranslateMap>(scale, translation));
 }
 
-// As the library lays a grid out, but with ZIP when asked for: it never packs a fog volume so. What follows the
-// topology are the values; the leaves hold none, but count as if they did in the memory that the grid says it takes.
-// `before`: bytes of the file that are not in the stream.
+// Writes a grid in the library's layout, but allows ZIP, which the library never uses for fog volumes. `values` follow
+// the topology; the tree's leaves hold none, but the memory metadata counts them. `before`: bytes of the file that
+// precede the stream.
 void write_grid(std::ostream& stream, uint64_t before, openvdb::GridBase& grid, uint32_t compression,
                 std::span<const std::string_view> values) {
     using namespace openvdb;
@@ -240,7 +240,7 @@ openvdb::GridBase::Ptr empty_grid(const VdbGridContent& content, const dmat4& in
     const GridBase::Ptr grid = GridBase::createGrid(content.vector ? Vec3SGrid::gridType() : FloatGrid::gridType());
     grid->setName(content.name);
     if (content.vector)
-        grid->setVectorType(VEC_CONTRAVARIANT_RELATIVE); // a velocity
+        grid->setVectorType(VEC_CONTRAVARIANT_RELATIVE); // velocity
     else
         grid->setGridClass(GRID_FOG_VOLUME);
     grid->setCreator(options.creator);
@@ -249,7 +249,7 @@ openvdb::GridBase::Ptr empty_grid(const VdbGridContent& content, const dmat4& in
     return grid;
 }
 
-// What stands before the values of one grid, which follow `before` bytes of others.
+// Everything of one grid before its leaf values; `before` bytes of other grids precede it.
 std::string encode_head(const VdbContent& content, size_t number, uint64_t before, openvdb::GridBase& grid,
                         const EncodedFog& fog, const VdbWriteOptions& options, uint32_t packing) {
     std::ostringstream stream(std::ios::binary);
@@ -270,7 +270,7 @@ EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options,
         const auto numbers = [&](size_t g) -> FloatTree& { return static_cast<FloatGrid&>(*grids[g]).tree(); };
         fill_tiles(numbers(0), content.tiles, options.half);
 
-        // The values first: how many bytes they take stands before them.
+        // Encode the values first: their size is stored before them.
         const uint32_t packing = options.blosc ? io::COMPRESS_BLOSC : io::COMPRESS_ZIP;
         OrderedLeaves leaves = encode_in_order(content, leaves_of_tiles(numbers(0)), options.half, packing);
         EncodedFog fog{{}, std::move(leaves.encoded)};
@@ -286,7 +286,7 @@ EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options,
             grids[g].reset();
         }
 
-        // The same content gets the same identity.
+        // The UUID is a hash of the content, so equal content gives equal files.
         set_identity(fog.heads[0], content_hash(fog.pieces()));
         return fog;
     });

@@ -1,5 +1,5 @@
-// The OpenVDB library behind two functions: bytes of a tree to plain leaves and tiles, and a volume to the bytes of a
-// file.
+// The OpenVDB library behind two functions: decodes the bytes of a tree to plain leaves and tiles, and encodes a volume
+// to the bytes of a file.
 #pragma once
 #include "volume/vdb/leaves.h"
 #include "volume/vdb/prewalk.h"
@@ -10,27 +10,27 @@
 #include <vector>
 
 namespace tyndall {
-// A tree as stored: nothing cleaned, values of double trees rounded to float; of vectors one component.
+// A tree as stored, without cleaning: doubles rounded to float, one component of vectors.
 struct DecodedTree {
     Leaves leaves;
-    std::vector<VoxelMask> active; // of the leaves
+    std::vector<VoxelMask> active; // per leaf
     std::vector<Tile> active_tiles;
-    std::vector<Tile> inactive_tiles; // those whose value is not 0
-    std::vector<ivec3> root_nodes;    // lower corners of the 4096³ cells that are not plain background
+    std::vector<Tile> inactive_tiles; // with nonzero values only
+    std::vector<ivec3> root_nodes;    // lower corners of the 4096³ cells that the file mentions
     float background = 0;
 };
 
-// Decodes what walk_tree() has accepted and counted. Throws Error (refused, out_of_memory) naming `where`.
+// Decodes a tree that walk_tree() has checked and counted. Throws Error (refused, out_of_memory) naming `where`.
 DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const VdbTreeCounts& counts,
                         uint32_t file_version, const std::string& where, int component = 0);
 
-// The bytes of a file, in order: for each grid what stands before the values of its leaves, and those.
+// The bytes of a file, in order: for each grid everything before its leaf values, then the values.
 struct EncodedFog {
-    std::vector<std::string> heads; // the first begins with that of the file
+    std::vector<std::string> heads; // the first begins with the file header
     EncodedLeaves leaves;
 
     std::vector<std::string_view> pieces() const;
-    uint64_t voxels() const; // active, in leaves of one grid
+    uint64_t voxels() const; // active voxels in the leaves of one grid
 };
 
 // Throws Error (out_of_memory).

@@ -30,14 +30,14 @@ struct Mended {
     uint64_t non_finite = 0, negative = 0;
 };
 
-// A density: finite and not negative.
+// Clamps nonfinite and negative values to 0 and counts them.
 float cleaned(float value, uint64_t voxels, Mended& mended) {
     if (!std::isfinite(value)) return mended.non_finite += voxels, 0.0f;
     if (value < 0) return mended.negative += voxels, 0.0f;
     return value;
 }
 
-// As integers, floats that need no mending are those below infinity.
+// True if all values are finite and nonnegative: as integers, such floats are below infinity. `any`: not all are 0.
 bool is_clean(const Leaf& leaf, bool& any) {
     constexpr int32_t bits_of_infinity = 0x7f800000;
     int32_t all = 0, wrong = 0;
@@ -49,7 +49,7 @@ bool is_clean(const Leaf& leaf, bool& any) {
     return all >= 0 && !wrong;
 }
 
-// True when anything is left of the leaf.
+// Returns true if the leaf still has nonzero values.
 bool clean_leaf(Leaf& leaf, const ActiveBox& box, Mended& mended) {
     const bool inside = contains(box, leaf.origin, leaf.origin + 7);
     bool any = false;
@@ -87,7 +87,7 @@ void clean_leaves(Leaves& leaves, const ActiveBox& box, Mended& mended) {
     leaves.shrink_to_fit();
 }
 
-// The parts of the tiles that lie in the active box and hold fog.
+// Appends the parts of tiles inside the active box that contain fog.
 void append_tiles(const std::vector<Tile>& from, const ActiveBox& box, std::vector<Tile>& to, Mended& mended) {
     for (Tile tile : from) {
         tile.low = glm::max(tile.low, box.low), tile.high = glm::min(tile.high, box.high);
@@ -97,7 +97,7 @@ void append_tiles(const std::vector<Tile>& from, const ActiveBox& box, std::vect
     }
 }
 
-// A background other than 0 also fills the root cells inside the active box that the file does not mention.
+// A nonzero background also fills the root cells inside the active box that the file does not mention.
 std::vector<Tile> background_tiles(DecodedTree& tree, const ActiveBox& box, const std::string& where) {
     constexpr int cell = 4096;
     constexpr int64_t max_cells = 1 << 15;

@@ -12,7 +12,7 @@
 
 namespace tyndall {
 namespace {
-// Text, but for the keys that readers take as numbers (the library's text for a double reads back the same).
+// Strings, except for the keys that readers expect as numbers (the library's text form of a double round-trips).
 openvdb::MetaMap metadata_map(const VdbMetadata& texts, const std::string& creator) {
     constexpr std::string_view whole[] = {"tyndall_schema", "tyndall_seed"};
     constexpr std::string_view real[] = {"tyndall_frame",  "tyndall_time_s",           "tyndall_fps",
@@ -34,7 +34,7 @@ openvdb::MetaMap metadata_map(const VdbMetadata& texts, const std::string& creat
     return metadata;
 }
 
-// Where the 36 characters of the UUID stand; the library would fill them at random.
+// Position of the 36-character UUID, which the library would fill at random.
 constexpr size_t uuid_begin = 21, uuid_bytes = 36;
 constexpr std::string_view nought = "00000000-0000-0000-0000-000000000000";
 
@@ -48,7 +48,7 @@ void write_header(std::ostream& stream) {
     write_value<uint32_t>(stream, openvdb::OPENVDB_FILE_VERSION);
     write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MAJOR_VERSION);
     write_value<uint32_t>(stream, openvdb::OPENVDB_LIBRARY_MINOR_VERSION);
-    write_value<char>(stream, 1); // the grids say where they begin and end
+    write_value<char>(stream, 1); // grids have offsets
     stream << nought;
 }
 }

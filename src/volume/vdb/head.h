@@ -1,4 +1,4 @@
-// The head of a file: what it is, who it is, what its author says of it.
+// The header of an OpenVDB file: magic and versions, UUID, and file metadata.
 #pragma once
 #include "volume/vdb/prewalk.h"
 
@@ -6,14 +6,13 @@
 #include <string>
 
 namespace tyndall {
-// Up to and including the number of grids. The identity is still nought.
+// Writes everything up to and including the number of grids, with an all-zero UUID.
 void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::string& creator, size_t grids);
 
-// Puts 32 hex digits in the place of the file's UUID.
+// Sets the file's UUID from 32 hex digits.
 void set_identity(std::string& head, std::string digits);
 
-// Whether the UUID at the head of a whole file is the hash of all else in it, as in files that this program has
-// written.
+// True if the UUID of a complete file is the hash of all its other bytes, as in files written by this program.
 bool has_identity_of_content(std::string_view file);
 
 template<class T> void write_value(std::ostream& stream, T value) {

@@ -18,17 +18,17 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t leaves_at_once = 256; // a chunk of work; the pieces of a file do not show it
+constexpr size_t leaves_at_once = 256; // work per task; does not affect the file
 constexpr float largest_float = std::numeric_limits<float>::max();
 
 size_t components(const VdbGridContent& grid) { return grid.vector ? 3 : 1; }
 
-// Mask, kind of inactive values, length of the chunk, values, and what blosc may add to those it cannot pack.
+// Mask, inactive-value flag, chunk length, values, and the overhead of Blosc for incompressible data.
 size_t max_bytes(const VdbGridContent& grid, bool half) {
     return sizeof(VoxelMask) + 1 + 8 + 512 * components(grid) * (half ? 2 : 4) + 16;
 }
 
-// The values of the voxels in a mask, closed up. Returns their number.
+// Copies the values of the voxels in a mask contiguously. Returns their number.
 size_t pack(const Leaf& leaf, const VoxelMask& mask, float* to) {
     const float* const begin = to;
     for (size_t w = 0; w < 8; ++w) {
@@ -41,13 +41,13 @@ size_t pack(const Leaf& leaf, const VoxelMask& mask, float* to) {
     return static_cast<size_t>(to - begin);
 }
 
-// Where one of the numbers is not 0 as stored.
+// Voxels where any scalar grid is nonzero as stored.
 VoxelMask active_voxels(std::span<const Leaf> leaves, std::span<const VdbGridContent> grids, bool half) {
     VoxelMask mask{};
     size_t at = 0;
     for (const VdbGridContent& grid : grids) {
         if (!grid.vector) {
-            // Half of the smallest half is rounded to 0.
+            // Values up to half the smallest half float round to 0.
             const VoxelMask some = voxels_above(leaves[at].values, half ? smallest_half / 2 : 0);
             for (size_t w = 0; w < mask.size(); ++w) mask[w] |= some[w];
         }
@@ -90,7 +90,7 @@ void encode_vectors(std::span<const Leaf, 3> leaves, const VoxelMask& mask, bool
         write(largest_float, std::type_identity<openvdb::Vec3s>());
 }
 
-// The leaf of one grid; nothing where no voxel is active.
+// Encodes a leaf of one grid; writes nothing if no voxel is active.
 void encode(std::span<const Leaf> leaves, const VoxelMask& mask, bool half, uint32_t compression,
             std::ostream& stream) {
     if (count_voxels(mask) == 0) return;
@@ -155,8 +155,7 @@ float stored_value(float value, bool half) {
 }
 
 namespace {
-// Bytes of one grid's piece: they go where its piece is as large as it can become, so that nothing is moved later, and
-// untouched pages cost nothing.
+// Output of one task for one grid, at an offset for maximum sizes: nothing is moved later, untouched pages are free.
 struct Piece {
     ByteSink sink;
     std::ostream stream;

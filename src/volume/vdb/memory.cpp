@@ -11,7 +11,7 @@
 
 namespace tyndall {
 namespace {
-// Most memory this process may hope for: of the machine, its control group and its own limit.
+// Memory available to this process: the minimum of the machine's, its cgroup's and its own limit, minus an eighth.
 uint64_t available_memory() {
     uint64_t most = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
     rlimit limit{};

@@ -10,10 +10,10 @@
 namespace tyndall {
 namespace {
 constexpr int64_t magic = 0x56444220;
-constexpr uint32_t oldest_version = 222, newest_version = 225; // 225 adds a type of grid that is not read, no bytes
+constexpr uint32_t oldest_version = 222, newest_version = 225; // 225 adds only a grid type that is not read
 constexpr uint64_t max_text = 4096, max_items = 4096, max_metadata = 16 << 20, max_grids = 1024;
 
-// What lies in the place of a volume often enough to deserve its own hint.
+// Checks the magic number, with a specific hint for Git LFS pointers, a common mistake.
 void check_magic(ByteCursor& file) {
     char start[20] = {};
     file.read(start, std::min<uint64_t>(sizeof start, file.left()), "the header");
@@ -36,14 +36,14 @@ template<class T> std::string numbers(ByteCursor& file, uint32_t size, size_t co
     return text;
 }
 
-// How many numbers a type of metadata holds: vec3s 3, mat4d 16, float 1.
+// Number of components of a metadata type: vec3s 3, mat4d 16, float 1.
 size_t component_count(const std::string& type) {
     if (type.size() != 5) return 1;
     const size_t n = static_cast<size_t>(type[3] - '0');
     return type.starts_with("vec") ? n : type.starts_with("mat") ? n * n : 1;
 }
 
-// One value as text; false for a type that is not shown (it is skipped).
+// Reads one value as text; skips it and returns false if its type is not supported.
 bool read_value(ByteCursor& file, const std::string& name, const std::string& type, std::string& text) {
     const auto size = file.value<uint32_t>("metadata " + name);
     const bool vector =
@@ -91,7 +91,7 @@ const std::string* find(const VdbMetadata& metadata, std::string_view name) {
     return nullptr;
 }
 
-// "Tree_float_5_4_3_HalfFloat" is a float tree of the usual shape, stored as half.
+// "Tree_float_5_4_3_HalfFloat" is a float tree of the standard shape, stored as half.
 void split_type(std::string type, VdbGridEntry& grid) {
     constexpr std::string_view half = "_HalfFloat", tree = "Tree_";
     grid.half = type.ends_with(half);
@@ -106,7 +106,7 @@ struct Offsets {
     int64_t grid = 0, voxels = 0, end = 0;
 };
 
-// Metadata and transform, from the end of the descriptor up to the tree.
+// Reads compression, metadata and transform, from the end of the descriptor up to the tree.
 void read_description(ByteCursor& file, VdbGridEntry& grid, bool whole_needed) {
     grid.compression = file.value<uint32_t>("the compression");
     if (grid.compression > 7) file.complain("its compression is not known: " + std::to_string(grid.compression));
@@ -149,7 +149,7 @@ VdbGridEntry read_grid(ByteCursor& file, bool has_offsets) {
     }
     read_description(file, grid, !has_offsets);
 
-    // Without offsets the only way to the next grid is through the tree.
+    // Without offsets, finding the next grid requires walking the tree.
     grid.tree_begin = file.position();
     if (has_offsets) {
         if (file.position() > static_cast<uint64_t>(offsets.end)) file.complain("its description passes its end");

@@ -12,7 +12,7 @@ struct NamedRole {
     std::string_view name;
     GridRole role;
 };
-// Houdini, Mantaflow, EmberGen, Bifrost and the attributes that renderers know.
+// Grid names of Houdini, Mantaflow, EmberGen and Bifrost, and attribute names that renderers recognize.
 constexpr NamedRole named_roles[] = {
     {"temperature", GridRole::temperature},
     {"temp", GridRole::temperature},

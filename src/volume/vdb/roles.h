@@ -1,4 +1,4 @@
-// What a grid of a VDB file looks like, by the names and types that programs write.
+// Guesses the quantity in a VDB grid from the names and types that programs write.
 #pragma once
 #include <string_view>
 
@@ -9,9 +9,9 @@ enum class GridRole { density, temperature, flame, emission, color, velocity, le
 inline constexpr std::string_view grid_role_names[] = {"density", "temperature", "flame",     "emission",
                                                        "color",   "velocity",    "level set", "other"};
 
-// By its name alone, however it is written and whatever follows a dot; density where it says nothing else.
+// By name alone, ignoring case and anything after a dot; density if the name is not recognized.
 GridRole role_of_name(std::string_view name);
 
-// By name, type and class; `other` for types that hold no quantity that is known.
+// By name, type and class; `other` for types that hold no known quantity.
 GridRole role_of(const VdbGridEntry& grid);
 }

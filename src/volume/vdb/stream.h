@@ -1,10 +1,10 @@
-// Bytes in memory behind the library's streams, without copies.
+// Stream buffers over memory for the OpenVDB library, without copies.
 #pragma once
 #include <streambuf>
 #include <string_view>
 
 namespace tyndall {
-// Reads; the stream fails at the end of the bytes.
+// Input; the stream fails at the end of the bytes.
 class ByteSource : public std::streambuf {
 public:
     explicit ByteSource(std::string_view bytes) {
@@ -26,7 +26,7 @@ protected:
     }
 };
 
-// Writes; the stream fails when the room is full.
+// Output; the stream fails if the buffer is full.
 class ByteSink : public std::streambuf {
 public:
     ByteSink(char* room, size_t bytes) { setp(room, room + bytes); }

@@ -6,12 +6,12 @@ namespace tyndall {
 namespace {
 bool is_close(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)); }
 
-// The three scales, followed by four vectors that the library derives from them and later uses instead of them.
+// Reads the scale and four vectors derived from it, which the library trusts and uses in its place.
 dvec3 read_scales(ByteCursor& file) {
     const auto scale = file.value<dvec3>("the transform");
     const auto derived = file.value<std::array<dvec3, 4>>("the transform");
     for (int axis = 0; axis < 3; ++axis) {
-        if (!std::isfinite(scale[axis]) || scale[axis] == 0) continue; // refused by check_matrix
+        if (!std::isfinite(scale[axis]) || scale[axis] == 0) continue; // reported by matrix_problem()
         const double inverse = 1 / scale[axis];
         const bool agrees = is_close(derived[0][axis], std::abs(scale[axis])) && is_close(derived[1][axis], inverse) &&
                             is_close(derived[2][axis], inverse * inverse) && is_close(derived[3][axis], inverse / 2);
@@ -27,7 +27,7 @@ dmat4 placed(dvec3 scale, dvec3 translation) {
     return matrix;
 }
 
-// Sixteen numbers, row vectors times matrix: the same order in memory as columns times vector.
+// Sixteen numbers for row vectors times matrix, which is the same memory order as column-major for column vectors.
 dmat4 read_matrix(ByteCursor& file) {
     const auto rows = file.value<std::array<double, 16>>("the transform");
     dmat4 matrix;
@@ -35,7 +35,7 @@ dmat4 read_matrix(ByteCursor& file) {
     return matrix;
 }
 
-// False when the type is not one of the linear maps.
+// Returns false if the type is not a linear map.
 bool read_linear_map(ByteCursor& file, const std::string& type, dmat4& matrix) {
     if (type == "UniformScaleMap" || type == "ScaleMap") {
         matrix = placed(read_scales(file), dvec3(0));
@@ -62,7 +62,7 @@ std::string matrix_problem(const dmat4& matrix) {
     if (!(std::abs(determinant) >= 1e-30 && std::abs(determinant) <= 1e30))
         return "its transform is singular or absurd (determinant " + std::to_string(determinant) + ")";
 
-    // A point must come back from the world to its voxel.
+    // Points must survive the round trip to world space and back.
     const dmat4 inverse = glm::inverse(matrix);
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 index(corner & 1 ? 1e4 : 0, corner & 2 ? 1e4 : 0, corner & 4 ? 1e4 : 0, 1);
@@ -78,7 +78,7 @@ VdbTransform read_transform(ByteCursor& file) {
     if (read_linear_map(file, type, result.index_to_world)) {
         result.problem = matrix_problem(result.index_to_world);
     } else if (type == "NonlinearFrustumMap") {
-        // Index box, taper and depth, then the linear map it is placed by.
+        // Index box, taper and depth, then the linear map that places it.
         file.skip(8 * sizeof(double), "the transform");
         const std::string second = file.text(256, "the name of the transform");
         result.complete = read_linear_map(file, second, result.index_to_world);

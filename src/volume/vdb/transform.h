@@ -8,14 +8,13 @@
 namespace tyndall {
 struct VdbTransform {
     dmat4 index_to_world{1}; // world = matrix · index
-    std::string problem;     // why it cannot place fog in the world; empty when it can
-    bool complete = true;    // the cursor stands behind it (not so for a kind of map that is not known)
+    std::string problem;     // why it cannot be used; empty if valid
+    bool complete = true;    // the cursor is past the record; false for an unknown kind of map
 };
 
-// Why a matrix cannot place fog in the world: numbers that are not finite, projections, and those that cannot be
-// inverted. Empty when it can.
+// Why a matrix cannot be used as an index-to-world transform (nonfinite, projective or not invertible); empty if valid.
 std::string matrix_problem(const dmat4& matrix);
 
-// Throws Error (refused) when the record is cut or contradicts itself.
+// Throws Error (refused) if the record is truncated or inconsistent.
 VdbTransform read_transform(ByteCursor& file);
 }

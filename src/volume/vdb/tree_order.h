@@ -1,4 +1,4 @@
-// The order in which a tree holds its leaves: by their 4096³, 128³ and 8³ cells, each time x before y before z.
+// The order of leaves in an OpenVDB tree: by their 4096³, 128³ and 8³ cells, each in x, y, z order.
 #pragma once
 #include "base/math.h"
 
@@ -7,6 +7,6 @@
 #include <vector>
 
 namespace tyndall {
-// Numbers of the leaves at `origins` (multiples of 8) in that order.
+// Indices into `origins` (multiples of 8) in that order.
 std::vector<uint32_t> in_tree_order(std::span<const ivec3> origins);
 }

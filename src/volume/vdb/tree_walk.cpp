@@ -1,5 +1,5 @@
-// The tree of a grid as it lies in the file: topology first (root, 32³ and 16³ nodes, voxel masks), then, in the same
-// order, the values of every leaf, stored as the active ones only and in compressed chunks.
+// Walks the tree of a grid in file order: first the topology (root, 32³ and 16³ nodes, voxel masks), then, in the same
+// order, the values of every leaf, in compressed chunks that may hold active values only.
 #include "volume/vdb/prewalk.h"
 
 #include "base/error.h"
@@ -15,7 +15,7 @@ enum class LeafKind { values, booleans, mask };
 
 struct TreeFormat {
     const char* type;
-    uint64_t value_bytes, half_bytes; // half_bytes 0: half does not apply
+    uint64_t value_bytes, half_bytes; // half_bytes 0: no half storage
     LeafKind leaf = LeafKind::values;
 };
 
@@ -53,7 +53,7 @@ template<size_t Bits> struct Mask {
     }
 };
 
-// Order-dependent sum of voxel masks: they are stored twice and must agree.
+// Order-dependent checksum of the voxel masks, which are stored twice and must agree.
 struct MaskSum {
     uint64_t value = 0x9e3779b97f4a7c15u;
 
@@ -128,7 +128,7 @@ void TreeWalk::read_root() {
     }
     counts_.root_tiles = tiles;
 
-    // The values of the leaves follow in the order of the keys, so another order would give leaves each other's values.
+    // Leaf values follow in the order of the keys, so any other order would assign values to the wrong leaves.
     for (uint32_t i = 0; i < nodes; ++i) {
         read_root_key(keys[tiles + i]);
         if (i > 0 && !(keys[tiles + i - 1] < keys[tiles + i])) file_.complain("its root nodes are not in order");
@@ -179,7 +179,7 @@ void TreeWalk::read_leaf_values() {
     }
 }
 
-// A byte says how inactive values are told: 0..5 by at most two values and a mask, 6 by storing all values.
+// A byte says how inactive values are stored: 0..5 as at most two values and a mask, 6 as all values in full.
 template<size_t Bits> void TreeWalk::read_values(const Mask<Bits>& active) {
     constexpr int8_t one_value = 2, mask_only = 3, mask_and_value = 4, mask_and_two = 5, all_values = 6;
     const auto kind = file_.value<int8_t>("the values of a node");
@@ -191,11 +191,11 @@ template<size_t Bits> void TreeWalk::read_values(const Mask<Bits>& active) {
 
     const bool active_only = (compression_ & vdb_active_mask) && kind != all_values;
     const uint64_t count = active_only ? active.count() : Bits;
-    if (half_ && count == 0) return; // the half writer leaves out an empty chunk
+    if (half_ && count == 0) return; // the writer omits empty chunks of halves
     read_chunk(count * stored_bytes_);
 }
 
-// A length before the bytes, when they are compressed: negative for bytes that would not shrink.
+// Compressed chunks are preceded by their length, negative if stored uncompressed because they would not shrink.
 void TreeWalk::read_chunk(uint64_t bytes) {
     constexpr uint64_t max_overhead = 16;
     if (!(compression_ & (vdb_zip | vdb_blosc))) return file_.skip(bytes, "the values of a node");
@@ -209,7 +209,7 @@ void TreeWalk::read_chunk(uint64_t bytes) {
     file_.skip(raw ? bytes : size, "the values of a node");
 }
 
-// Blosc reads as far as its own header says: version, codec version, flags, type size; sizes plain, of a block, packed.
+// Blosc trusts its own header: version, codec version, flags, type size; then uncompressed, block and compressed size.
 void TreeWalk::check_blosc_header(uint64_t chunk, uint64_t bytes) {
     constexpr uint64_t header_bytes = 16;
     if (chunk < header_bytes) file_.complain("a compressed chunk is shorter than its header");

@@ -26,7 +26,7 @@ DecodedTree load_nano_tree(ByteCursor& file, const VdbGridEntry& grid, VdbTreeCo
     return decode_nano_tree({memory.get(), grid.nano_bytes}, grid, counts, where, component);
 }
 
-// Reads the bytes of a tree once, walks them, and decodes the very bytes that were walked.
+// Reads the bytes of a tree once, and validates and decodes the same bytes in memory.
 DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid, VdbTreeCounts& counts,
                       int component = 0) {
     if (directory.nano) return load_nano_tree(file, grid, counts = {}, component);
@@ -45,7 +45,7 @@ DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const Vdb
     return decode_tree(bytes, grid, counts, directory.file_version, where, component);
 }
 
-// An allocation that fails is the user's to know, not a crash.
+// Reports a failed allocation as an Error.
 template<class Body> auto within_memory(const std::filesystem::path& path, const Body& body) {
     try {
         return body();
@@ -86,7 +86,7 @@ VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const Vdb
     return info;
 }
 
-// One more volume of the file, cleaned; adds what was mended to the report.
+// A cleaned volume from one tree; adds its corrections to the report.
 SparseVolume cleaned_volume(DecodedTree tree, const VdbGridEntry& grid, const ByteCursor& file, VdbReadReport& report) {
     SparseVolume volume;
     VdbReadReport own;
@@ -97,7 +97,7 @@ SparseVolume cleaned_volume(DecodedTree tree, const VdbGridEntry& grid, const By
     return volume;
 }
 
-// Distances are known up to the narrow band only, which the background is as far as.
+// Distances are known only within the narrow band, whose half width is the background value.
 void check_width(const ValueMap& map, const DecodedTree& tree, const std::string& where) {
     if (!(map.width > tree.background) || !(tree.background > 0)) return;
     refuse(where, formatted("its narrow band is %g wide, in the file's units: a \"width\" of %g passes it",
@@ -153,7 +153,7 @@ SparseVolume plain_volume(DecodedTree tree, const VdbGridEntry& grid) {
     return volume;
 }
 
-// A staggered grid has each component on the lower face of its voxel along that axis.
+// A staggered grid stores each component on the lower voxel face along that axis.
 VelocityVolume read_velocity(const std::filesystem::path& path, std::span<const std::string> names, const ValueMap& map,
                              VdbReadReport* report) {
     ByteCursor file(path);

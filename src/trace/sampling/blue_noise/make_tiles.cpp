@@ -1,8 +1,8 @@
 // Run by the build: writes the tiles of trace/sampling/jitter.cpp as a header to standard output.
 //
-// Void and cluster (Ulichney 1993): ranks are given one after the other to the place with the most room around it on a
-// torus. In the spatio-temporal tile (Wolfe et al. 2022) places of one slice are near each other in the plane, places
-// of one pixel in time; others do not count.
+// Void and cluster (Ulichney 1993): ranks are assigned in order, each to the center of the largest void on a torus. In
+// the spatio-temporal tile (Wolfe et al. 2022), points of one slice interact by their distance in the plane, points of
+// one pixel by their distance in time; others do not.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -15,7 +15,7 @@ constexpr float sigma = 1.9f;
 
 int wrap(int a, int size) { return (a % size + size) % size; }
 
-// Tells equal places apart.
+// Breaks ties.
 float tie_break(uint32_t x) {
     x ^= x >> 16, x *= 0x7feb352du, x ^= x >> 15, x *= 0x846ca68bu, x ^= x >> 16;
     return static_cast<float>(x >> 8) * 0x1p-24f * 1e-4f;
@@ -24,7 +24,7 @@ float tie_break(uint32_t x) {
 struct Tile {
     int slices;
     std::vector<float> energy;
-    std::vector<int> best; // the emptiest place of each slice, -1 = to be found
+    std::vector<int> best; // position of lowest energy in each slice, -1 = unknown
 
     int index(int x, int y, int z) const { return (z * side + y) * side + x; }
 };

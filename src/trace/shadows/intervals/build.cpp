@@ -1,4 +1,4 @@
-// The hierarchy of boxes: halved at the median of the longest axis.
+// Builds the bounding volume hierarchy by median splits along the longest axis.
 #include "trace/shadows/intervals/shadow_slices.h"
 
 namespace tyndall {

@@ -1,4 +1,4 @@
-// Triangles cut by the plane through ray and light. All half spaces of a box, and all triangles of a leaf, at once.
+// Cuts triangles by the plane through ray and light; vectorized over a fan's half spaces and a leaf's triangles.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "trace/shadows/intervals/cut.cpp"
 #include <hwy/foreach_target.h>
@@ -17,7 +17,7 @@ using Doubles = hn::CappedTag<double, 8>;
 using Halves = hn::Rebind<float, Doubles>;
 constexpr size_t double_lanes = hn::MaxLanes(Doubles());
 
-// Whether every half space holds some corner of the box.
+// Whether every half space contains some corner of the box.
 HWY_INLINE bool meets(const ShadowFan& fan, const ShadowSlices::Node& node) {
     const Doubles d;
     for (size_t i = 0; i < 8; i += double_lanes) {
@@ -33,7 +33,7 @@ HWY_INLINE bool meets(const ShadowFan& fan, const ShadowSlices::Node& node) {
     return true;
 }
 
-// Goes through the leaves that the fan meets.
+// Visits the leaves that the fan overlaps.
 template<class Visit> HWY_INLINE void visit_leaves(const ShadowSlices& slices, const ShadowFan& fan, Visit visit) {
     const auto end = static_cast<uint32_t>(slices.nodes.size());
     for (uint32_t at = 0; at < end;) {
@@ -44,7 +44,7 @@ template<class Visit> HWY_INLINE void visit_leaves(const ShadowSlices& slices, c
     }
 }
 
-// Heights of a leaf's corners above the plane.
+// Heights of the triangle corners of a leaf above the plane.
 struct Heights {
     alignas(64) double corners[3][8];
     uint32_t cut = 0; // bits of the triangles with corners on both sides
@@ -73,8 +73,8 @@ HWY_INLINE void set_heights(const ShadowSlices::Corners& corners, const ShadowSl
     heights.cut = some & ~all;
 }
 
-// The segment in which a cut triangle crosses the plane. A corner in the plane counts as above it, and points on edges
-// are worked out from the upper end: neighbours agree on them to the last bit, so no light leaks between.
+// The segment in which a triangle intersects the plane. A corner in the plane counts as above it, and points on edges
+// are computed from the upper end: neighbors agree on them bit for bit, so no light leaks between them.
 void append_segment(const ShadowSlices::Corners& corners, const ShadowSlice& slice, uint32_t triangle,
                     const double height[3], std::vector<ShadowSlice::Segment>& segments) {
     const bool above[3] = {height[0] >= 0, height[1] >= 0, height[2] >= 0};
@@ -105,7 +105,7 @@ void append_segments_kernel(const ShadowSlices& slices, const ShadowSlice& slice
     });
 }
 
-// The triangles of a leaf that the fan meets, as bits.
+// The triangles of a leaf that the fan overlaps, as bits.
 HWY_INLINE uint32_t met_triangles(const ShadowSlices::Corners& corners, const ShadowFan& fan, uint32_t first) {
     const Doubles d;
     uint32_t met = 0;

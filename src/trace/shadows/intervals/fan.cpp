@@ -1,9 +1,9 @@
-// Where triangles can lie that shadow a ray, or some of several rays.
+// Bounds on where triangles can lie that shadow a ray, or any of several rays.
 #include "trace/shadows/intervals/shadow_slice.h"
 
 namespace tyndall {
 namespace {
-constexpr double farthest = 1e9; // metres
+constexpr double farthest = 1e9; // meters
 
 void set(ShadowFan& fan, int i, dvec3 normal, double least) {
     fan.x[i] = normal.x, fan.y[i] = normal.y, fan.z[i] = normal.z, fan.least[i] = least;
@@ -13,7 +13,7 @@ dvec3 normal_of(const ShadowFan& fan, int i) { return {fan.x[i], fan.y[i], fan.z
 
 double slack(dvec3 point) { return 1e-9 * (1 + glm::length(point)); }
 
-// Points whose convex hull holds what lies between the rays and their lights, in the box of all triangles.
+// Points whose convex hull contains everything between the rays and their lights, within the box of all triangles.
 std::vector<dvec3> hull_of(std::span<const ShadowSlice> slices, std::span<const LightPoint> points, const Box& box) {
     const dvec3 middle = 0.5 * (dvec3(box.low) + dvec3(box.high));
     const double size = glm::length(dvec3(box.high) - middle);
@@ -46,7 +46,7 @@ ShadowSlice make_slice(const Ray& ray, const LightPoint& light) {
     slice.x_max = std::min<double>(ray.t_max, farthest) * slice.per_metre;
     const dvec3 towards = light.far ? light.at : light.at - slice.origin;
     dvec3 across = towards - glm::dot(towards, slice.x) * slice.x;
-    across -= glm::dot(across, slice.x) * slice.x; // what rounding left along the ray, felt when `across` is small
+    across -= glm::dot(across, slice.x) * slice.x; // removes rounding error along the ray, if `across` is small
     const dvec3 size = glm::abs(slice.origin);
     const double hair = 1e-9 * glm::length(towards) + (light.far ? 0 : 1e-12 * std::max({size.x, size.y, size.z, 1.0}));
     slice.light_x = glm::dot(towards, slice.x), slice.light_y = glm::length(across);
@@ -79,8 +79,8 @@ ShadowFan make_fan(const ShadowSlice& s) {
     return fan;
 }
 
-// The half spaces of the middle ray, moved until they hold all rays, and the outermost of the planes through the line
-// from the rays' origin to the light.
+// The half spaces of the middle ray, moved until they contain all rays, and the outermost of the planes through the
+// line from the rays' origin to the light.
 ShadowSlices coherent_slices(const ShadowSlices& slices, std::span<const Ray> rays,
                              std::span<const LightPoint> points) {
     ShadowSlices found;

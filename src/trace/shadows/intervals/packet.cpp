@@ -1,4 +1,4 @@
-// Slices of sixteen rays at once: every triangle is cut by all their planes in vectors.
+// Slices of sixteen rays at once: cuts every triangle by all their planes, vectorized over the rays.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "trace/shadows/intervals/packet.cpp"
 #include <hwy/foreach_target.h>
@@ -20,7 +20,7 @@ constexpr size_t lanes = hn::MaxLanes(Tag());
 HWY_INLINE Doubles load(const double* values) { return hn::Load(Tag(), values); }
 HWY_INLINE Doubles set(double value) { return hn::Set(Tag(), value); }
 
-// A corner in the slices of some rays: height above the plane, and where in the plane it is seen from above.
+// A triangle corner relative to the slices of some rays: height above the plane, and coordinates in it.
 struct Corner {
     Doubles height, x, y;
 };
@@ -40,7 +40,7 @@ HWY_INLINE Point between(const Point& a, const Point& b, const Doubles& share) {
     return {hn::MulAdd(share, hn::Sub(b.x, a.x), a.x), hn::MulAdd(share, hn::Sub(b.y, a.y), a.y)};
 }
 
-// Where the edge a-b crosses the plane, worked out from its upper end: triangles on either side agree to the last bit.
+// Where the edge a-b crosses the plane, computed from its upper end: triangles on either side agree bit for bit.
 HWY_INLINE Point crossing(const Corner& a, const Corner& b, const hn::Mask<Tag>& a_above) {
     const Doubles up = hn::IfThenElse(a_above, a.height, b.height), down = hn::IfThenElse(a_above, b.height, a.height);
     const Point high = select(a_above, {a.x, a.y}, {b.x, b.y}), low = select(a_above, {b.x, b.y}, {a.x, a.y});
@@ -52,7 +52,7 @@ struct Shadows {
     uint32_t rays = 0; // bits
 };
 
-// The stretches of `lanes` rays from the i-th on that the segment a-b shadows (see append_shadow()).
+// The intervals that the segment a-b shadows on `lanes` rays from the i-th on (see append_shadow()).
 HWY_INLINE void cast(const ShadowPacket& p, size_t i, Point a, Point b, hn::Mask<Tag> there, Shadows& shadows) {
     const Tag d;
     const Doubles zero = hn::Zero(d), top = load(p.top + i), light_x = load(p.light_x + i),

@@ -1,15 +1,15 @@
-// From a ray and a light to lit stretches. All geometry in double; vertices are the floats Embree has.
+// From a ray and a light to lit intervals. All geometry is in double; vertices are the floats that Embree has.
 #include "trace/shadows/intervals/shadow_slice.h"
 
 namespace tyndall {
 namespace {
-constexpr double reach = 0.9999; // of the way to a local light: where shadow rays end
+constexpr double reach = 0.9999; // of the distance to a local light: where shadow rays end
 
 using Point = ShadowSlice::Point;
 using Slice = ShadowSlice;
 
-// Appends the stretch that a segment shadows: the point (x, y) lies on the way from t to the light when
-// t = (x·ly - y·lx) / (ly - w·y), with w = 0 for a sun and 1 else, and 0 < y < ly.
+// Appends the interval that a segment shadows: the point (x, y) lies between t and the light (lx, ly) if
+// t = (x·ly - y·lx) / (ly - w·y), with w = 0 for a sun and 1 otherwise, and 0 < y < ly.
 void append_shadow(const Slice& slice, Point a, Point b, std::vector<Interval<double>>& shadows) {
     if (a.y > b.y) std::swap(a, b);
     const double top = slice.far ? std::numeric_limits<double>::infinity() : reach * slice.light_y;
@@ -25,7 +25,7 @@ void append_shadow(const Slice& slice, Point a, Point b, std::vector<Interval<do
     if (!shadow.empty()) shadows.push_back({shadow.low / slice.per_metre, shadow.high / slice.per_metre});
 }
 
-// The stretch of a line start + t·along that a ball covers; empty when it misses.
+// The interval of the line start + t·along inside a circle; empty if it misses.
 Interval<double> in_ball(Point start, Point along, Point center, double squared_radius) {
     const double dx = start.x - center.x, dy = start.y - center.y;
     const double a = along.x * along.x + along.y * along.y, b = along.x * dx + along.y * dy;
@@ -34,10 +34,10 @@ Interval<double> in_ball(Point start, Point along, Point center, double squared_
     return {(-b - std::sqrt(inside)) / a, (-b + std::sqrt(inside)) / a};
 }
 
-// The glowing ball in the slice's coordinates.
+// The light's sphere in the slice's coordinates.
 struct Ball {
     Point center{0, 0};
-    double squared_radius = 0; // of the disc in which the plane cuts it
+    double squared_radius = 0; // of the disc in which the plane intersects it
 };
 
 Ball ball_in(const Slice& slice, const LightPoint& light) {
@@ -54,7 +54,7 @@ void append_outside(const Slice& slice, const Ball& ball, Point a, Point b, std:
     if (inside.high < 1) append_shadow(slice, between(a, b, inside.high), b, shadows);
 }
 
-// What of 0..t_max no shadow covers. Gaps below rounding are none.
+// Appends the parts of 0..t_max that no shadow covers; ignores gaps below rounding.
 void append_gaps(std::vector<Interval<double>>& shadows, double t_max, std::vector<Interval<double>>& lit) {
     std::sort(shadows.begin(), shadows.end(), [](Interval<double> a, Interval<double> b) { return a.low < b.low; });
     const double smallest = 1e-12 * (1 + t_max);
@@ -66,7 +66,7 @@ void append_gaps(std::vector<Interval<double>>& shadows, double t_max, std::vect
     if (t_max > from + smallest) lit.push_back({from, t_max});
 }
 
-// Inside the ball all is lit.
+// Adds the interval inside the light's sphere, where everything is lit.
 void add_stretch(Interval<double> added, std::vector<Interval<double>>& lit) {
     if (added.empty()) return;
     std::vector<Interval<double>> joined;
@@ -117,7 +117,7 @@ void set_lane(ShadowPacket& packet, size_t i, const Slice& slice) {
     packet.active |= 1u << i;
 }
 
-// Whether a light's ball may reach into a box.
+// Whether a light's sphere overlaps a box.
 bool meets_ball(const LightPoint& light, const ShadowSlices::Node& box) {
     if (light.far || !(light.radius > 0)) return false;
     const dvec3 nearest = glm::clamp(light.center, dvec3(box.low), dvec3(box.high));
@@ -138,7 +138,7 @@ void find_lit(const ShadowSlices& slices, std::span<const Ray> rays, std::span<c
         set_lane(packet, i, planes[i]);
     }
 
-    ShadowSlices around; // leaves in a light's ball, whose triangles are cut at its surface
+    ShadowSlices around; // leaves in a light's sphere, whose triangles are clipped at its surface
     around.corners = slices.corners;
     for (size_t at = 0; at < slices.nodes.size(); ++at) {
         const ShadowSlices::Node& node = slices.nodes[at];

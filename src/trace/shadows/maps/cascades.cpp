@@ -1,4 +1,4 @@
-// Where the orthographic pictures of a sun lie.
+// Fits the orthographic cascades of a sun.
 #include "trace/shadows/maps/shadow_map.h"
 #include "trace/snapshot.h"
 #include "trace/view_frustum.h"
@@ -8,11 +8,11 @@
 namespace tyndall {
 namespace {
 constexpr double steps_per_octave = 4; // of texel sizes
-constexpr double worth_it = 0.7;       // a cascade's texels are at most this part of the next one's
-constexpr int spare = 5; // texels around what is asked for: filters up to its edge, and what snapping takes
+constexpr double worth_it = 0.7;       // a cascade's texels are at most this fraction of the next one's size
+constexpr int spare = 5;               // texels of margin, for filters at the edge and for snapping
 constexpr double endless = std::numeric_limits<double>::infinity();
 
-// A rectangle across the light, metres.
+// A rectangle perpendicular to the light, meters.
 struct Across {
     double low[2] = {endless, endless}, high[2] = {-endless, -endless};
 
@@ -49,7 +49,7 @@ Across across(const ShadowMap& map, const Box& box) {
     return result;
 }
 
-// What the camera sees between two planar depths, the second one perhaps infinite.
+// What the camera sees between two planar depths, the second one possibly infinite.
 Across across(const ShadowMap& map, const View& view, double near, double far) {
     const Camera& camera = view.camera;
     const vec2 low(-past_edge(view)), high = vec2(view.size) - low;
@@ -76,7 +76,7 @@ Across across(const ShadowMap& map, const View& view, double near, double far) {
     return result;
 }
 
-// Planar depths that corners of a box have.
+// Range of planar depths of a box's corners.
 Interval<double> depths(const Camera& camera, const Box& box) {
     Interval<double> range{endless, -endless};
     for (int i = 0; i < 8; ++i) {
@@ -86,8 +86,8 @@ Interval<double> depths(const Camera& camera, const Box& box) {
     return range;
 }
 
-// A picture whose texels have sizes of a fixed series of the scene's extent and lie on a fixed lattice of the world, so
-// that edges of shadows do not swim when the camera moves.
+// A picture whose texel sizes come from a fixed series relative to the scene's extent, on a lattice fixed in the world,
+// so that shadow edges do not swim when the camera moves.
 ShadowPicture picture_of(const ShadowMap& map, const Across& region, const Snapshot& snapshot, int resolution) {
     const double unit = snapshot.extent;
     ShadowPicture picture;
@@ -109,7 +109,7 @@ ShadowPicture picture_of(const ShadowMap& map, const Across& region, const Snaps
 
 void fit_cascades(const View& view, const Snapshot& snapshot, const Box& casters, const ShadowMapOptions& options,
                   ShadowMap& map) {
-    // Beside what casts shadows all is lit, and only fog in front of the camera is asked for.
+    // Everything outside the shadow casters' bounds is lit, and only fog in front of the camera needs lookups.
     Box fog;
     for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
     if (fog.empty()) return;
@@ -121,7 +121,7 @@ void fit_cascades(const View& view, const Snapshot& snapshot, const Box& casters
     range.low = std::max(range.low, 0.0);
     if (range.empty()) return;
 
-    // Ranges half logarithmic, half even; fog without end is divided where the scene is.
+    // Splits half logarithmic, half uniform; unbounded fog is split where the scene is.
     Box scene = casters;
     scene.grow(snapshot.bounds);
     const double end =

@@ -17,12 +17,12 @@ struct Filling {
     mat3 map_to_world;
     bool has_alpha;
     ViewFrustum seen;
-    float start = 0;           // w at which the rays of a sun begin, before all surfaces
-    float nearest = 0;         // distance from a local light at which surfaces begin
+    float start = 0;           // w at which the rays of a sun start, in front of all surfaces
+    float nearest = 0;         // distance from a local light at which its rays start
     float smallest_cosine = 0; // to the axis, of texels that the light reaches
 };
 
-// The ray at a texel number; w = its t + start.
+// The ray through a texel coordinate; w = its t + start.
 Ray texel_ray(const Filling& filling, const ShadowPicture& picture, size_t face, vec2 texel) {
     const vec2 at = (texel - picture.offset) / picture.scale;
     const ShadowMap& map = filling.map;
@@ -37,7 +37,7 @@ Ray texel_ray(const Filling& filling, const ShadowPicture& picture, size_t face,
     return {map.position, glm::normalize(direction)};
 }
 
-// Depths of rays that met a sheet more transparent than opaque: from behind it on, one sheet after the other.
+// Depth of the first surface that blocks a ray, passing BLEND surfaces with alpha below one half one after the other.
 float depth_behind_sheets(const Occluders& occluders, Ray ray, float t_min, float depth) {
     Hits hits;
     for (int sheet = 0; sheet < max_sheets; ++sheet) {
@@ -50,7 +50,7 @@ float depth_behind_sheets(const Occluders& occluders, Ray ray, float t_min, floa
     return depth;
 }
 
-// Where any look-up that reads texels of a block can lie on the ray through its middle.
+// Where lookups that read texels of a block can lie on the ray through its middle.
 Interval<float> seen_by_block(const Filling& filling, const ShadowPicture& picture, const Ray& middle) {
     const float radius =
         (0.5f * block_side + shadow_guard + 0.5f) * std::sqrt(2.0f) / std::min(picture.scale.x, picture.scale.y);

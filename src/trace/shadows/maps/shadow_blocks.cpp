@@ -6,8 +6,8 @@
 
 namespace tyndall {
 namespace {
-constexpr float rounding = 2e-6f; // more than look-ups round, and than what they move surfaces away
-constexpr float max_across = 2;   // widths of a block across a box
+constexpr float rounding = 2e-6f; // exceeds the rounding of lookups, and their offset of surfaces
+constexpr float max_across = 2;   // a box is at most this many blocks of its level wide
 
 ivec2 blocks_of(ivec2 texels) { return (texels + block_side - 1) / block_side; }
 size_t area(ivec2 size) { return static_cast<size_t>(size.x) * static_cast<size_t>(size.y); }
@@ -30,7 +30,7 @@ void fill_smallest(const ShadowPicture& picture, const float* depth, DepthRange*
     });
 }
 
-// The next level: blocks of two by two.
+// The next level: each block covers 2×2 finer ones.
 void fill_larger(const DepthRange* fine, ivec2 fine_count, DepthRange* coarse) {
     const ivec2 count = (fine_count + 1) / 2;
     std::fill_n(coarse, area(count), DepthRange{});
@@ -39,9 +39,9 @@ void fill_larger(const DepthRange* fine, ivec2 fine_count, DepthRange* coarse) {
             grow(coarse[y / 2 * count.x + x / 2], fine->nearest, fine->farthest);
 }
 
-// Range of all texels that reach into a rectangle of texel numbers, which lies in the picture.
+// Depth range of all texels that overlap a rectangle of texel coordinates, which lies inside the picture.
 DepthRange range_in(const ShadowMap& map, const ShadowPicture& picture, vec2 low, vec2 high) {
-    // Of the level whose blocks are at least half as wide as the rectangle, three by three hold it.
+    // On the level whose blocks are at least half as wide as the rectangle, 3×3 blocks cover it.
     const float share = std::max(high.x - low.x, high.y - low.y) / (max_across * block_side);
     const int exponent = static_cast<int>(std::bit_cast<uint32_t>(share) >> 23) - 126; // share <= 2^exponent
     const int level = std::clamp(exponent, 0, picture.levels - 1);
@@ -88,7 +88,7 @@ Lit lit_in_box(const ShadowMap& map, vec3 low, vec3 high) {
     const float depth = low.z - std::abs(low.z) * rounding;
     const float filter = map.pcf == 0 ? 0.0f : map.pcf == 1 ? 0.5f : 1.5f;
     for (const ShadowPicture& picture : map.pictures) {
-        // In texels, and as look-ups know it inside, outside, or partly so.
+        // The box in texels, and whether lookups treat it as inside, outside, or both.
         const vec2 slack_texels = (glm::abs(picture.offset) + vec2(picture.size)) * rounding;
         const vec2 from = vec2(low) * picture.scale + picture.offset - slack_texels;
         const vec2 to = vec2(high) * picture.scale + picture.offset + slack_texels;

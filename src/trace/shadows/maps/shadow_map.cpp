@@ -1,4 +1,4 @@
-// Shadow maps of local lights, and what all kinds share.
+// Shadow maps of local lights, and code shared by all kinds.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "trace/shadows/maps/shadow_map.cpp"
 #include <hwy/foreach_target.h>
@@ -30,9 +30,9 @@ HWY_EXPORT(lit_shares_kernel);
 HWY_EXPORT(texel_sizes_kernel);
 
 namespace {
-constexpr float widest_picture = 70 * pi / 180; // half angle of a spot
+constexpr float widest_picture = 70 * pi / 180; // half angle of a spot with a single picture
 
-// A spot's picture of its cone, or a cube's six.
+// A single picture of a spot's cone, or the six of a cube.
 void fit_tangents(const Light& light, const ShadowMapOptions& options, ShadowMap& map) {
     const bool cube = shines_around(light) || light.outer_cone > widest_picture;
     map.projection = cube ? LightProjection::all_around : LightProjection::perspective;

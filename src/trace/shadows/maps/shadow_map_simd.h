@@ -1,4 +1,4 @@
-// Shadow maps looked up for kernels (see base/simd/simd.h for how such files are compiled).
+// Shadow map lookups in kernels (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_TRACE_SHADOWS_MAPS_SHADOW_MAP_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_TRACE_SHADOWS_MAPS_SHADOW_MAP_SIMD_H
 #undef TYNDALL_TRACE_SHADOWS_MAPS_SHADOW_MAP_SIMD_H
@@ -19,11 +19,11 @@ HWY_INLINE Ints chosen(const Mask16& where, const Ints& a, const Ints& b) {
     return r;
 }
 
-// Where points lie in the pictures.
+// Positions of points in the pictures.
 struct TexelPlaces {
-    Floats u, v, w;  // texel numbers; along the light
-    Floats texel;    // its side, metres
-    Ints first, row; // of their picture: first texel, texels from row to row
+    Floats u, v, w;  // texel coordinates; depth along the light
+    Floats texel;    // side of a texel, meters
+    Ints first, row; // of the picture: index of its first texel, texels per row
     Mask16 mapped;   // lanes that lie in a picture
 };
 
@@ -32,7 +32,7 @@ HWY_INLINE Mask16 in_picture(const Floats& u, const Floats& v, ivec2 size) {
            (v <= static_cast<float>(size.y) - shadow_guard);
 }
 
-// The finest cascade that holds the point. Neighbouring points mostly share one.
+// The finest cascade that contains each point. Neighboring points mostly share one.
 HWY_INLINE void place_in_cascades(const ShadowMap& map, const Vec3s& q, TexelPlaces& places) {
     places.w = q.z, places.mapped = q.x < q.x;
     for (const ShadowPicture& picture : map.pictures) {
@@ -92,7 +92,7 @@ HWY_INLINE TexelPlaces texel_places(const ShadowMap& map, const Vec3s& q) {
     return places;
 }
 
-// Share of the light that reaches 16 points given in map coordinates, by percentage-closer filtering (Reeves et al.
+// Fraction of the light that reaches 16 points given in map coordinates, by percentage-closer filtering (Reeves et al.
 // 1987): depths are compared first, then averaged.
 HWY_INLINE Floats lit_share_at(const ShadowMap& map, const Vec3s& q) {
     if (map.empty()) return 1.0f;
@@ -100,7 +100,7 @@ HWY_INLINE Floats lit_share_at(const ShadowMap& map, const Vec3s& q) {
     const Floats outside = map.projection == LightProjection::parallel ? 1.0f : 0.0f;
     if (!any(places.mapped)) return outside;
 
-    // Surfaces lie a millionth further than stored: what floats round.
+    // Moves surfaces back by a millionth, to cover float rounding.
     const Floats depth = fused(places.texel, -map.bias, places.w - abs(places.w) * 1e-6f);
     const float* stored = map.depth.data();
     const auto lit = [&](const Ints& texel) HWY_ATTR { return select(gather(stored, texel) >= depth, 1.0f, 0.0f); };

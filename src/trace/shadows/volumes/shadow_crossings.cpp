@@ -16,8 +16,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using DoubleTag = hn::ScalableTag<double>;
 constexpr size_t double_lanes = HWY_LANES(double);
 
-// Memory that a thread keeps: for each corner the rays it lies to the left of, for each edge those that cross below it;
-// as bits, valid where the stamp is `now`.
+// Scratch memory of a thread: for each corner, the rays that it lies to the left of; for each edge, the rays that cross
+// it; as bits, valid if the stamp is `now`.
 struct Scratch {
     struct Bits {
         uint32_t stamp = 0, rays = 0;
@@ -40,7 +40,7 @@ struct Crossing16 {
     Scratch& scratch;
     std::vector<ShadowCrossing>& found;
 
-    // Calls `each` with a place among the rays and the products of as many of them as a register holds.
+    // Calls `each` with an index into the rays and the products of one register of rays from there on.
     template<class Each> HWY_INLINE void products(const RayProduct& f, const Each& each) const {
         const DoubleTag d;
         const auto x = hn::Set(d, f.x), y = hn::Set(d, f.y), z = hn::Set(d, f.z), w = hn::Set(d, f.w);
@@ -73,7 +73,7 @@ struct Crossing16 {
         return known.rays;
     }
 
-    // Rays that cross the edge's plane ahead, on the edge's stretch of it, and behind the edge as the light sees it.
+    // Rays that cross the edge's side: ahead of the eye, between its corners, and behind the edge as the light sees it.
     HWY_INLINE uint32_t find_crossed(const ShadowView::Edge& edge) const {
         const uint32_t a = left_of(edge.a), b = left_of(edge.b);
         const uint32_t ahead = (edge.start > 0 ? a & ~b : b & ~a) & rays.active;
@@ -87,7 +87,7 @@ struct Crossing16 {
         return known.rays;
     }
 
-    // Not beyond the end, nor where lines of sight and light part.
+    // Crossings of a side, except those beyond a ray's end or behind the eye.
     void add_side(const ShadowView::Side& side) const {
         const uint32_t there = crossed(side.edge);
         if (!there) return;
@@ -113,7 +113,7 @@ struct Crossing16 {
         }
     }
 
-    // How far behind an edge, along the light, a ray is at t.
+    // Distance along the light from an edge to a ray at t.
     double behind_edge(const ShadowView::Edge& edge, int ray, double t) const {
         const double share =
             product(edge.before, ray) / (product(view.corners[edge.b], ray) - product(view.corners[edge.a], ray));
@@ -122,7 +122,7 @@ struct Crossing16 {
         return share * glm::distance(view.parallel ? p + t * view.forward : t * p, view.light.at);
     }
 
-    // What a triangle's sides leave over is crossed at the triangle itself.
+    // Where a ray's crossings with a triangle's sides do not cancel, it crosses the triangle itself.
     void add_cap(const ShadowView::Cap& cap) const {
         uint32_t up[3], down[3]; // rays whose count each side raises, and lowers
         for (int k = 0; k < 3; ++k) {
@@ -130,7 +130,7 @@ struct Crossing16 {
             const bool lowers = (view.edges[cap.edges[k]].start > 0) == cap.left[k];
             up[k] = lowers ? 0 : rays_there, down[k] = lowers ? rays_there : 0;
         }
-        // Whether as many sides raise it as lower it, ray by ray, in two binary digits.
+        // Rays for which the numbers of raising and lowering sides differ, counted in two bits each.
         const auto ones = [](const uint32_t(&v)[3]) { return v[0] ^ v[1] ^ v[2]; };
         const auto twos = [](const uint32_t(&v)[3]) { return (v[0] & v[1]) | (v[1] & v[2]) | (v[2] & v[0]); };
         const int offset = cap.dark - cap.opposite;
@@ -156,7 +156,7 @@ struct Crossing16 {
         if (!seen) found.pop_back();
     }
 
-    // The faces of the rays' tile that are near enough for any of them; all when the tile is unknown.
+    // Visits the faces of the rays' tile up to a distance; all faces if the tile is unknown.
     template<class Add> HWY_INLINE void visit(const ShadowTiles& tiles, size_t count, float end, const Add& add) const {
         if (rays.tile < 0) {
             for (uint32_t i = 0; i < count; ++i) add(i);

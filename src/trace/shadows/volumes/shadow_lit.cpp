@@ -1,4 +1,4 @@
-// Lit stretches of sixteen rays, from the crossings of all.
+// Lit intervals of sixteen rays, from their crossings.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "trace/shadows/volumes/shadow_lit.cpp"
 #include <hwy/foreach_target.h>
@@ -11,8 +11,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Each ray's places in ascending order, their changes with them: insertion, on all rays at once. Neighbouring rays
-// cross the same faces in much the same order.
+// Sorts each ray's crossings, with their changes: insertion sort on all rays at once, as neighboring rays cross the
+// same faces in nearly the same order.
 void sort_crossings(std::vector<ShadowCrossing>& crossings) {
     for (size_t k = 1; k < crossings.size(); ++k) {
         Floats t = load(crossings[k].t), change = load(crossings[k].change);
@@ -62,7 +62,7 @@ void append_lit_kernel(const int (&dark)[16], std::vector<ShadowCrossing>& cross
     }
     const Floats end = load(high);
     Floats from = load(low), count = load(counts);
-    constexpr float rounding = 4e-7f; // leaves gaps between faces that meet
+    constexpr float rounding = 4e-7f; // relative: leaves gaps between adjacent faces, which do not count
     for (const ShadowCrossing& crossing : crossings) {
         const Floats t = min(load(crossing.t), end);
         append_stretches(from, t, (count <= 0.0f) & (t - from > abs(t) * rounding), lit);

@@ -27,7 +27,7 @@ private:
     std::vector<uint32_t> slots_;
 };
 
-// Adding 0 makes -0 the same place as 0.
+// Adding 0 turns -0 into 0.
 uint32_t place_hash(vec3 p) {
     return hash(std::bit_cast<uint32_t>(p.x + 0.0f), std::bit_cast<uint32_t>(p.y + 0.0f),
                 std::bit_cast<uint32_t>(p.z + 0.0f));
@@ -59,7 +59,7 @@ ShadowMesh make_shadow_mesh(const std::vector<ShadowTriangle>& triangles) {
 }
 
 namespace {
-// How far a point lies outside of a cone, metres; the half angle is at most π/2.
+// Distance from a point to a cone, meters; 0 inside. The half angle is at most π/2.
 double distance_to_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 point) {
     const dvec3 offset = point - apex;
     const double away = glm::length(offset);
@@ -68,8 +68,8 @@ double distance_to_cone(dvec3 apex, dvec3 axis, double half_angle, dvec3 point) 
     return beside > 0 ? away * std::sin(std::min(beside, 0.5 * double{pi})) : 0;
 }
 
-// Whether a ball may stand between a point of the light's ball and what the light reaches: they and all that lies
-// between them are in the cone and the range, widened by the light's radius.
+// Whether a sphere may lie between a point of the light's sphere and what the light reaches: whether it touches the
+// cone and the range, widened by the light's radius.
 bool may_shadow(const Light& light, dvec3 center, double radius) {
     const double slack = radius + 1e-6 * (radius + glm::distance(center, dvec3(light.position)));
     if (glm::distance(center, dvec3(light.position)) - slack > std::max(light.range, light.radius)) return false;
@@ -85,7 +85,7 @@ bool may_shadow(const Light& light, const ShadowMesh& mesh, const ShadowMesh::Tr
                       std::max({glm::distance(a, center), glm::distance(b, center), glm::distance(c, center)}));
 }
 
-// New numbers of what is kept, in the same order: which corner of an edge comes first stays as it is.
+// New indices of the elements kept, in the same order, which keeps the order of an edge's corners.
 std::vector<uint32_t> renumbered(const std::vector<uint8_t>& kept) {
     std::vector<uint32_t> numbers(kept.size());
     for (uint32_t i = 0, next = 0; i < kept.size(); ++i) numbers[i] = kept[i] ? next++ : 0;

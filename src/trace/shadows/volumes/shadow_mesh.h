@@ -1,5 +1,5 @@
-// The triangles that cast shadows, joined: corners at the same place are one corner, edges between the same corners one
-// edge. Nothing else is asked of a mesh: it may be open, fold, touch or cross itself.
+// Shadow-casting triangles with connectivity: coincident corners become one corner, edges between the same corners one
+// edge. A mesh may be open, non-manifold or self-intersecting.
 #pragma once
 #include "trace/occlusion/occluders.h"
 
@@ -24,7 +24,7 @@ struct ShadowMesh {
 // Triangles with alpha and those without area are left out.
 ShadowMesh make_shadow_mesh(const std::vector<ShadowTriangle>& triangles);
 
-// The triangles that may shadow what a light reaches from any point of its ball: those by the cone of a spot, within
-// the light's range.
+// The triangles that may shadow what a light reaches, seen from any point of its sphere: those near a spot's cone, and
+// within the light's range.
 std::shared_ptr<const ShadowMesh> mesh_in_reach(std::shared_ptr<const ShadowMesh> mesh, const Light& light);
 }

@@ -1,5 +1,5 @@
-// Which tiles of the picture a face can be seen in: sides are quadrangles with two corners at infinity, so they are
-// clipped and projected in homogeneous coordinates.
+// Bins faces into the image tiles that they cover. Sides are quads with two corners at infinity, so they are clipped
+// and projected in homogeneous coordinates.
 #include "trace/shadows/volumes/shadow_view.h"
 
 namespace tyndall {
@@ -9,13 +9,13 @@ constexpr int tile_side = shadow_tile_side;
 // A point in the camera's axes: x right, y up, z forward; w = 0 at infinity.
 using Point = glm::dvec4;
 
-// The picture's mapping: pixel = (x/depth, y/depth) scaled, with depth the z of a perspective, the w of an orthographic
-// camera.
+// The image's projection: pixel = (x/depth, y/depth) scaled, with depth the z of a perspective, the w of an
+// orthographic camera.
 struct Projection {
     dvec3 position, right, up, forward;
     bool orthographic;
-    double half_width, half_height; // of the picture at depth 1, margin included
-    dvec3 pixels;                   // per unit across at depth 1; the picture's centre
+    double half_width, half_height; // of the image at depth 1, margin included
+    dvec3 pixels;                   // x: pixels per unit at depth 1; y, z: the image's center
     ivec2 tiles;
     double margin;
 
@@ -39,7 +39,7 @@ Projection make_projection(const Camera& camera, ivec2 size, float margin) {
     return p;
 }
 
-// A convex polygon and what is left of it.
+// A convex polygon, clipped in place.
 struct Polygon {
     Point at[12];
     int count = 0;
@@ -56,7 +56,7 @@ struct Polygon {
     }
 };
 
-// A row of tiles a face covers.
+// The tiles of a row that a face covers.
 struct Span {
     uint32_t face;
     int row, low, high; // tiles low..high
@@ -64,7 +64,7 @@ struct Span {
 
 struct Collector {
     const Projection& projection;
-    std::vector<Interval<int>> wanted; // tiles of each row; the rest stays empty
+    std::vector<Interval<int>> wanted; // tiles of each row to fill; the rest stays empty
     std::vector<Span> spans;
     std::vector<float> nearest; // of each face
 
@@ -90,7 +90,7 @@ struct Collector {
         if (polygon.count == 0) return;
 
         double x[12], y[12], bottom = infinity, top = -double(infinity), near = infinity;
-        bool endless = false; // through the eye, or seen edge-on to it
+        bool endless = false; // through the eye, or seen edge-on
         for (int i = 0; i < polygon.count; ++i) {
             const Point& q = polygon.at[i];
             const double depth = p.depth(q), size = std::abs(q.x) + std::abs(q.y) + std::abs(q.z) + std::abs(q.w);
@@ -129,7 +129,7 @@ struct Collector {
         }
     }
 
-    // By tile, and in each the nearest first.
+    // Faces by tile, the nearest first.
     ShadowTiles sorted() const {
         std::vector<uint32_t> order(spans.size());
         for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -152,7 +152,7 @@ struct Collector {
 }
 
 namespace {
-// The tiles of each row in which a beam is seen: those of its surface, a pyramid around it that ends at infinity.
+// The tiles of each row that a beam covers: those of the surface of a pyramid around it, which extends to infinity.
 std::vector<Interval<int>> tiles_in_reach(const Projection& projection, const std::optional<ShadowReach>& reach) {
     const std::vector<Interval<int>> all(static_cast<size_t>(projection.tiles.y), {0, projection.tiles.x - 1});
     if (!reach) return all;

@@ -1,11 +1,11 @@
-// From volumes to products with rays. Everything in double, from the eye.
+// Converts shadow volumes to products with a camera's rays. Everything is in double, relative to the eye.
 #include "trace/shadows/volumes/shadow_view.h"
 
 #include "base/random.h"
 
 namespace tyndall {
 namespace {
-// The mesh's corner, and the light, from `place`.
+// Mesh corners and the light, relative to `place`.
 struct Placed {
     const ShadowVolumes& volumes;
     dvec3 place;
@@ -20,14 +20,14 @@ Placed placed_at(const ShadowVolumes& volumes, dvec3 place) {
     return result;
 }
 
-// Twice the area light, a, b and eye span, above 0 where the eye lies to the left of a→b as the light sees it.
+// Scalar triple product of light, a, b and eye, positive if the eye lies to the left of a→b as seen from the light.
 double start_of(const Placed& placed, const ShadowMesh::Edge& edge, const dvec3* direction) {
     const dvec3 a = placed.corner(edge.a);
     const dvec3 side = glm::cross(towards(placed.light, a), placed.corner(edge.b) - a);
     return direction ? -glm::dot(side, *direction) : -glm::dot(side, a);
 }
 
-// How clear the eye is of the planes through light and edges, as a sine.
+// The eye's smallest angle, as a sine, to the planes through light and edges.
 double clearance(const Placed& placed, const dvec3* direction) {
     double least = 1;
     for (const ShadowMesh::Edge& edge : placed.volumes.mesh->edges) {
@@ -39,7 +39,7 @@ double clearance(const Placed& placed, const dvec3* direction) {
     return least;
 }
 
-// An offset by which an eye in the very plane of a side steps off it, too short to be seen.
+// An offset, too small to be visible, that moves an eye out of the plane of a side.
 dvec3 small_step(uint32_t attempt, double scale) {
     if (attempt == 0) return dvec3(0);
     const auto number = [&](uint32_t axis) { return to_unit(hash(attempt, axis, 0x51de5u)) - 0.5; };
@@ -159,11 +159,11 @@ void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowViewRays&
     const dvec3 origin = dvec3(ray.origin) - view.place, direction(ray.direction);
     const double along = glm::dot(origin, direction) / glm::dot(direction, direction);
     dvec3 p = view.parallel ? origin - along * direction : direction;
-    // The plane through ray and light has to be one.
+    // The plane through ray and light must not be degenerate.
     const dvec3 across = view.parallel ? view.light.far ? view.forward : p - view.light.at : p;
     const dvec3 other = view.parallel ? view.light.far ? across : view.forward : towards(view.light, dvec3(0));
     const dvec3 normal = glm::cross(across, other);
-    constexpr double hair = 1e-5; // below it rounding turns the plane by more than the eye clears the sides
+    constexpr double hair = 1e-5; // below it, rounding tilts the plane by more than the eye's clearance from the sides
     if ((!view.parallel || !view.light.far) &&
         glm::dot(normal, normal) <= hair * hair * glm::dot(across, across) * glm::dot(other, other)) {
         const dvec3 axis = std::abs(other.x) < 0.5 * glm::length(other) ? dvec3(1, 0, 0) : dvec3(0, 1, 0);

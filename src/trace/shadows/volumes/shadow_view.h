@@ -1,54 +1,54 @@
-// Shadow volumes as one camera sees them: which sides and caps a ray crosses, found by signs alone.
+// Shadow volumes as seen by one camera: which sides and caps a ray crosses, found by signs alone.
 //
-// Seen from the light, a ray from the eye is a half line that walks over a picture of triangles. Each corner lies to
-// one side of that line (`corners`, one product per ray); an edge whose corners lie on different sides is crossed ahead
-// or behind, which the eye's place relative to the edge decides once for all rays (`start`); and it is crossed between
-// ray and light or beyond the ray (`before`). The signs of corners and edges are shared by all faces they belong to, so
-// a ray never slips between two neighbours or meets both. What is left to rounding is where a crossing lies, never
-// whether: the count behind any number of crossings is right.
+// Seen from the light, a ray from the eye is a half line across an image of the triangles. Each corner lies on one side
+// of that line (`corners`, one product per ray). An edge whose corners lie on different sides is crossed ahead of the
+// eye or behind it, which the eye's position relative to the edge decides for all rays at once (`start`), and lies
+// between ray and light or beyond the ray (`before`). All faces of a corner or edge share its signs, so a ray never
+// slips between two neighbors or hits both. Rounding affects only where a crossing lies, never whether there is one:
+// the count of volumes is correct after any number of crossings.
 //
-// An orthographic camera is an eye infinitely far back. Then the crossings from there on are counted.
+// An orthographic camera is an eye infinitely far back, and crossings are counted from there.
 #pragma once
 #include "scene/camera.h"
 #include "trace/shadows/volumes/shadow_volumes.h"
 #include "volume/bricks/brick_walk.h"
 
 namespace tyndall {
-// x·p.x + y·p.y + z·p.z + w; p is a ray's direction, or where it crosses the plane of `place` when rays are parallel.
+// x·p.x + y·p.y + z·p.z + w; p is a ray's direction or, if rays are parallel, where it crosses the plane of `place`.
 using RayProduct = glm::dvec4;
 
 inline constexpr int shadow_tile_side = 8; // pixels
 
-// Faces of one kind by tiles of the picture, the nearest first.
+// Faces of one kind by image tile, the nearest first.
 struct ShadowTiles {
     struct Face {
-        float nearest = 0; // no ray meets it before, metres from the camera along the ray
+        float nearest = 0; // lower bound of hit distances, meters from the camera along the ray
         uint32_t index = 0;
     };
-    std::vector<uint32_t> first; // of the faces of each tile; one more at the end
+    std::vector<uint32_t> first; // index of the first face of each tile; one more at the end
     std::vector<Face> faces;
 };
 
 struct ShadowView {
     struct Edge {
         uint32_t a = 0, b = 0;
-        double start = 0;  // above 0 where the eye lies to its left
-        RayProduct before; // of another sign than `start` where the edge lies between ray and light
+        double start = 0;  // positive if the eye lies to its left
+        RayProduct before; // its sign differs from that of `start` if the edge lies between ray and light
     };
     struct Side {
         uint32_t edge = 0;
-        int change = 0;    // of the count, for every ray that crosses it
-        RayProduct across; // crossed at t = start / -across, or at across / start when rays are parallel
+        int change = 0;    // of the volume count, for every ray that crosses it
+        RayProduct across; // crossed at t = start / -across, or at across / start if rays are parallel
     };
     struct Cap {
         uint32_t edges[3];
         bool left[3];
         bool dark = false;     // the eye is in its volume
-        bool opposite = false; // the point opposite to the eye, beyond the light, is: rays end in it at infinity
+        bool opposite = false; // so is the point opposite the eye, beyond the light: rays end in it at infinity
         dvec3 normal{0};       // the plane normal·x = height, x from `place`
         double height = 0;
     };
-    LightPoint light; // from `place`
+    LightPoint light; // relative to `place`
     dvec3 place{0}, forward{0, 0, -1};
     bool parallel = false;
     int dark = 0; // volumes the eye is in
@@ -60,48 +60,47 @@ struct ShadowView {
     ShadowTiles side_tiles, cap_tiles;
 };
 
-// For rays from one point; or all in one direction, with any origins.
+// Views for rays from one point, and for parallel rays with any origins.
 ShadowView view_from(const ShadowVolumes& volumes, dvec3 point);
 ShadowView view_along(const ShadowVolumes& volumes, dvec3 place, dvec3 direction);
 
-// For the rays of a camera, which may stray by `margin` pixels from their pixel; binned.
+// For a camera's rays, which may deviate by `margin` pixels from their pixel; faces are binned.
 ShadowView view_from(const ShadowVolumes& volumes, const Camera& camera, ivec2 size, float margin);
 
-// Sorts sides and caps into the picture's tiles.
+// Bins sides and caps into the image's tiles.
 void fill_tiles(const ShadowVolumes& volumes, const Camera& camera, ivec2 size, float margin, ShadowView& view);
 
-// A face that some of sixteen rays cross: where, by each ray's own t (infinite on rays that do not cross it), and by
-// how much the count of volumes around the ray changes there.
+// A face that some of sixteen rays cross: each ray's t there (infinite if it does not cross), and by how much the
+// number of volumes around the ray changes.
 struct ShadowCrossing {
     alignas(64) float t[16] = {};
     alignas(64) float change[16] = {};
     alignas(
-        64) float behind[16] = {}; // metres from there to the edge that casts this shadow; 0 at caps, or not asked for
+        64) float behind[16] = {}; // meters from there to the edge that casts this shadow; 0 at caps, or if not needed
 };
 
-// The tile of the image that all positions lie in, no farther than `margin` pixels outside of it; -1 where there is
-// none.
+// The image tile that contains all positions, at most `margin` pixels outside; -1 if there is none.
 int tile_of(const ShadowView& view, std::span<const vec2> positions, float margin);
 
 // Up to 16 rays of a view.
 struct ShadowViewRays {
     alignas(64) double p[3][16] = {};  // see RayProduct
-    alignas(64) double start[16] = {}; // of each ray: from the eye, or from the plane of `place` when rays are parallel
-    alignas(64) double end[16] = {};   // how far crossings are wanted, counted as `start`
+    alignas(64) double start[16] = {}; // t of its origin: from the eye or, if rays are parallel, the plane of `place`
+    alignas(64) double end[16] = {};   // t up to which crossings are found, measured like `start`
     uint32_t active = 0;               // bits
     int tile = -1;                     // that all of them lie in; -1 = unknown
-    bool edges = true;                 // whether crossings tell how far behind an edge they lie
+    bool edges = true;                 // whether crossings have their distance behind an edge
 };
 
-// Makes a ray that the view's eye sees the lane-th of `rays`, up to its t_max. A ray along or through the light is
-// turned off it by a hair.
+// Sets the lane-th of `rays` to a ray of the view's eye, up to its t_max. A ray along or through the light is turned
+// off it by a tiny angle.
 void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowViewRays& rays);
 
-// Appends the crossings of the active rays up to their ends, in no order.
+// Appends the crossings of the active rays up to their ends, in any order.
 void find_crossings(const ShadowView& view, const ShadowViewRays& rays, std::vector<ShadowCrossing>& crossings);
 
-// Sorts the crossings of each ray (but not `behind`) and appends its stretches of low..high in no volume; `dark`: the
-// counts before all crossings.
+// Sorts the crossings of each ray (but not `behind`) and appends the parts of its range that lie in no volume; `dark`:
+// the counts before all crossings.
 void append_lit(const int (&dark)[16], std::vector<ShadowCrossing>& crossings, const Interval<double> (&ranges)[16],
                 std::vector<Interval<double>> (&lit)[16]);
 }

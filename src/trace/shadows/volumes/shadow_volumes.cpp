@@ -13,7 +13,7 @@ bool in_ball(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, const
 }
 
 std::optional<ShadowReach> shadow_reach(const Light& light) {
-    constexpr float widest = 80 * pi / 180; // beyond, a cone leaves out little
+    constexpr float widest = 80 * pi / 180; // wider cones exclude little
     if (!has_cone(light) || light.area || light.outer_cone > widest) return {};
     return ShadowReach{dvec3(light.position), glm::normalize(dvec3(light.direction)), double{light.outer_cone}};
 }

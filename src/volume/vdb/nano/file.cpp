@@ -14,14 +14,14 @@
 
 namespace tyndall {
 namespace {
-constexpr std::string_view magic = "NanoVDB"; // and a digit, which tells files from grids
-constexpr uint32_t readable_version = 32;     // of nodes and files; minor versions keep to it
+constexpr std::string_view magic = "NanoVDB"; // followed by a digit that distinguishes files from grids
+constexpr uint32_t readable_version = 32;     // major version; minor versions are compatible
 constexpr uint64_t max_name = 4096, max_grids = 1024;
-constexpr uint64_t max_expansion = 1100; // times that zlib or LZ4 unpack at most
+constexpr uint64_t max_expansion = 1100; // upper bound on the compression ratio of zlib and LZ4
 
 bool has_magic(const void* bytes) { return std::memcmp(bytes, magic.data(), magic.size()) == 0; }
 
-// The names of grid types in OpenVDB; those of quantized floats are floats.
+// OpenVDB names of grid types; quantized floats count as float.
 std::string type_name(nanovdb::GridType type) {
     using enum nanovdb::GridType;
     if (type == Fp4 || type == Fp8 || type == Fp16 || type == FpN) return "float";
@@ -45,14 +45,14 @@ uint32_t compression_of(nanovdb::io::Codec codec, const ByteCursor& file) {
     return 0;
 }
 
-// One chunk of packed bytes to at most `size` plain ones; how many it held.
+// Decompresses one chunk to at most `size` bytes; returns the number of bytes.
 uint64_t unpack_zip(std::string_view packed, char* to, uint64_t size, const ByteCursor& file) {
     z_stream stream{};
     stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
     if (inflateInit(&stream) != Z_OK) throw std::bad_alloc();
     int state = Z_OK;
     uint64_t taken = 0, made = 0;
-    constexpr uint64_t step = 1 << 30; // zlib counts in 32 bits
+    constexpr uint64_t step = 1 << 30; // zlib counts are 32-bit
     while (state == Z_OK && made < size) {
         stream.avail_in = static_cast<uInt>(std::min(packed.size() - taken, step));
         stream.next_out = reinterpret_cast<Bytef*>(to + made);
@@ -81,7 +81,7 @@ uint64_t unpack_blosc(std::string_view packed, char* to, uint64_t size, const By
     return static_cast<uint64_t>(made);
 }
 
-// The first `size` bytes of a grid.
+// Reads the first `size` bytes of a grid, decompressed.
 void unpack(ByteCursor& file, const VdbGridEntry& grid, char* to, uint64_t size) {
     file.seek(grid.tree_begin, "the grid");
     if (grid.compression == 0) return file.read(to, size, "the grid");
@@ -113,7 +113,7 @@ void check_version(const nanovdb::Version& version, const ByteCursor& file) {
                             readable_version));
 }
 
-// What the grid says of itself at its head must be what the file has announced.
+// Reads the grid's own header, which must agree with the file's description of the grid.
 void read_head(ByteCursor& file, const nanovdb::io::MetaData& announced, VdbGridEntry& grid) {
     nanovdb::GridData head;
     unpack(file, grid, reinterpret_cast<char*>(&head), sizeof head);
@@ -142,7 +142,7 @@ VdbGridEntry read_announcement(ByteCursor& file, nanovdb::io::MetaData& announce
     return grid;
 }
 
-// A header, what it announces, and the grids.
+// Reads a file segment: its header, the grid descriptions and the grids' headers.
 void read_segment(ByteCursor& file, VdbDirectory& directory) {
     const auto header = file.value<nanovdb::io::Header>("the header");
     if (!has_magic(&header)) file.complain("is damaged: no grids begin here");

@@ -1,15 +1,15 @@
-// NanoVDB files as a directory of grids, and the plain bytes of each.
+// The directory of grids in a NanoVDB file, and the decompressed bytes of each.
 #pragma once
 #include "volume/bricks/leaf_memory.h"
 #include "volume/vdb/prewalk.h"
 
 namespace tyndall {
-// Whether a file is one; the cursor stays where it is.
+// True for a NanoVDB file; does not move the cursor.
 bool is_nanovdb(ByteCursor& file);
 
-// The description of every grid. Throws Error (refused) for what is not a whole file of a version that can be read.
+// The description of every grid. Throws Error (refused) unless the file is complete and of a supported version.
 VdbDirectory read_nano_directory(ByteCursor& file);
 
-// The grid.nano_bytes of a grid, unpacked. Throws Error (refused) when they do not unpack to that.
+// The grid.nano_bytes decompressed bytes of a grid. Throws Error (refused) if decompression fails.
 LargeBytes unpacked_grid(ByteCursor& file, const VdbGridEntry& grid);
 }

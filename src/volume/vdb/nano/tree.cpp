@@ -18,7 +18,7 @@ template<class T> float component_of(const nanovdb::Vec3<T>& value, int componen
     return static_cast<float>(value[component]);
 }
 
-// Where the child of a number lies in a node of so many children a side, in children.
+// Position of child `number`, in units of children, in a node with 2^bits children per side.
 ivec3 place(uint32_t number, uint32_t bits) {
     const uint32_t mask = (1u << bits) - 1;
     return {number >> 2 * bits, number >> bits & mask, number & mask};
@@ -46,7 +46,7 @@ private:
         return static_cast<uint64_t>(reinterpret_cast<const char*>(&node) - bytes_.data());
     }
 
-    // The node so many bytes behind another one, all of which must lie in the grid.
+    // The node `step` bytes after offset `from`; must lie entirely within the grid.
     template<class Node> const Node& node(uint64_t from, int64_t step) const {
         const uint64_t at = from + static_cast<uint64_t>(step);
         if (at % NANOVDB_DATA_ALIGNMENT || at > bytes_.size() || bytes_.size() - at < sizeof(Node))
@@ -57,7 +57,7 @@ private:
         return node<Node>(offset_of(from), step);
     }
 
-    // No more nodes than there is room for: in a tree each has one parent.
+    // In a tree every node has one parent, so there cannot be more nodes than fit in the grid.
     template<class Node> void count(uint64_t& nodes) const {
         if (++nodes > bytes_.size() / sizeof(Node)) refuse(where_, "is damaged: nodes share a child");
     }
@@ -101,7 +101,7 @@ private:
         if (std::ranges::adjacent_find(places) != places.end()) refuse(where_, "two root nodes share a place");
     }
 
-    // Every child of an internal node or its value.
+    // Visits every child of an internal node and adds its tiles.
     template<class Node, class OnChild>
     void read_children(const Node& node, ivec3 low, uint32_t bits, int size, const OnChild& on_child) {
         for (uint32_t n = 0; n < 1u << 3 * bits; ++n) {
@@ -125,7 +125,7 @@ private:
 
     void add_leaf(const Leaf& leaf, ivec3 low) {
         count<Leaf>(counts_.leaves);
-        if constexpr (std::is_same_v<Build, nanovdb::FpN>) { // whose values follow it
+        if constexpr (std::is_same_v<Build, nanovdb::FpN>) { // variable size: values follow the node
             if (leaf.mFlags >> 5 > 4 || bytes_.size() - offset_of(leaf) < leaf.memUsage())
                 refuse(where_, "is damaged: the values of a leaf lie outside of the grid");
         }
