@@ -1,5 +1,5 @@
-// Programs are compiled for x86-64-v3 with AES and PCLMUL. This file is compiled for any x86-64 processor and ends them
-// on an older one with one line, before code that the processor lacks can run.
+// The programs are compiled for x86-64-v3 with AES and PCLMUL, this file for any x86-64 processor. On an older one it
+// exits with a one-line error before an unsupported instruction can run.
 #include <unistd.h>
 
 namespace {
@@ -8,7 +8,7 @@ constexpr char line[] =
     "tyndall: error: this processor is too old: Tyndall needs x86-64-v3 (AVX2, FMA, BMI2, F16C) with "
     "AES and PCLMUL, as in Intel Haswell (2013), AMD Zen (2017) and later\n";
 
-// Constructors of the lowest number run first.
+// Constructors with lower priority numbers run first.
 __attribute__((constructor(101))) void refuse_old_processors() {
     __builtin_cpu_init();
     if (__builtin_cpu_supports("x86-64-v3") && __builtin_cpu_supports("aes") && __builtin_cpu_supports("pclmul"))

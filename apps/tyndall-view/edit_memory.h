@@ -1,4 +1,4 @@
-// What controls that edit the scene remember from frame to frame.
+// State that the scene-editing controls keep from one interface frame to the next.
 #pragma once
 #include "viewer/editing/handle_drag.h"
 #include "viewer/state/setting_groups.h"
@@ -7,15 +7,15 @@
 
 namespace tyndall {
 struct EditMemory {
-    uint64_t drags = 0;       // so far: the number of the one that goes on
-    std::string held;         // the property whose slider is held,
-    SliderRange range;        // and how far it goes as long
-    std::string refused, why; // the last edit that was refused
-    bool has_mouse = false;   // since it was pressed on a light in the picture,
-    bool moved = false;       // and has gone far enough to move it
+    uint64_t drags = 0;       // number of drags so far, which identifies the current one
+    std::string held;         // path of the property whose slider is held
+    SliderRange range;        // of that slider, fixed while it is held
+    std::string refused, why; // path of the last refused edit, and the reason
+    bool has_mouse = false;   // the mouse button was pressed on a light in the image
+    bool moved = false;       // the mouse has moved far enough since to drag the light
     std::optional<HandleDrag> drag;
-    bool file_exists = false; // there is one of the name to save as
+    bool file_exists = false; // a file named file_name exists
     std::string file_name;    // to save as
-    std::string file_name_of; // the scene's own file when that was proposed
+    std::string file_name_of; // the scene file for which file_name was proposed
 };
 }

@@ -1,4 +1,4 @@
-// How long the interface takes, and how soon pictures come.
+// Timings of the interface and of the first image.
 #pragma once
 #include "viewer/painting/render_thread.h"
 
@@ -7,11 +7,11 @@
 
 namespace tyndall {
 struct InterfaceTimes {
-    std::vector<double> interface, gl; // seconds of each frame, without and with nothing but GL; swapping apart
+    std::vector<double> interface, gl; // seconds per frame, before GL and in GL; neither includes the buffer swap
     double first_picture = -1;         // seconds after the start
-    double seconds = 0;                // in all
+    double seconds = 0;                // total run time
 };
 
-// For people; one line each on the interface, GL and pictures.
+// Readable text: one line each on the interface, GL and images.
 std::string times_text(const InterfaceTimes& times, const PictureCounts& counts);
 }

@@ -1,4 +1,4 @@
-// The frames of the interface.
+// The viewer's main loop.
 #include "../tyndall/common.h"
 #include "base/clock.h"
 #include "base/error.h"
@@ -11,7 +11,7 @@ namespace tyndall {
 namespace {
 constexpr double active_wait = 1.0 / 60, resting_wait = 0.25; // seconds between interface frames
 constexpr double active_time = 0.5;                           // after the last input
-constexpr double watch_interval = 0.5;                        // between looks at the scene's files
+constexpr double watch_interval = 0.5;                        // between checks of the scene's files for changes
 
 void take_loaded(Viewer& viewer) {
     ViewState& state = viewer.state;
@@ -29,7 +29,7 @@ void take_loaded(Viewer& viewer) {
         if (!state.message.empty()) announce(viewer, std::exchange(state.message, {}), true);
         return;
     }
-    // The last good picture stays, unless there is none or a script asked for this scene.
+    // A failed load keeps the last good image on screen; it is fatal only without one, or when a script asked for it.
     if (!state.scene || !viewer.script_place.empty()) fail(loaded->code, viewer.script_place, loaded->error);
     state.scene_file = state.scene->file;
     if (std::exchange(state.reloading, false))
@@ -44,7 +44,7 @@ void watch_files(Viewer& viewer) {
     if (!state.scene || state.loading || viewer.now < viewer.watched_at + watch_interval) return;
     viewer.watched_at = viewer.now;
     if (changed_inputs(state.session->inputs).empty()) return;
-    state.session->inputs = input_times(*state.scene); // of a broken file too: the next change counts
+    state.session->inputs = input_times(*state.scene); // so that a broken file is not read again before its next change
     viewer.script_place.clear();
     reload_scene(state);
 }
@@ -109,10 +109,10 @@ void post_request(Viewer& viewer) {
     viewer.posted = state.revision, viewer.posted_shown = state.shown_revision, viewer.posted_moving = moving;
     try {
         viewer.thread.post(request_of(state, moving));
-    } catch (const Error& error) { // a camera that looks nowhere at this frame
+    } catch (const Error& error) { // a camera without a view direction at this frame
         if (!viewer.script.finished()) fail(error.code, viewer.script_place, error.what());
         tell(viewer, error.what(), true);
-        viewer.picture_revision = state.revision; // there will be no picture
+        viewer.picture_revision = state.revision; // there will be no image
     }
 }
 
@@ -132,13 +132,13 @@ void take_screenshot(Viewer& viewer) {
     }
 }
 
-// What was done to the window as a whole.
+// Handles a request to close the window and files dropped on it.
 void take_wishes(Viewer& viewer) {
     if (viewer.files_to_come == 0 && viewer.window.take_close()) act(viewer, {Verb::close, {}, {}, {}});
     if (const std::string file = viewer.window.take_dropped(); !file.empty()) act(viewer, {Verb::open, {file}, {}, {}});
 }
 
-// One frame of the interface. Everything up to GL is its own time.
+// Runs one frame of the interface; times.interface is everything before GL.
 void run_frame(Viewer& viewer) {
     viewer.window.wait(wait_of(viewer));
     const double start = steady_seconds();
@@ -181,7 +181,7 @@ void run_viewer(const ViewerOptions& options) {
     viewer.started = viewer.now = steady_seconds();
     while (!viewer.quit && !viewer.state.leaving) run_frame(viewer);
     viewer.times.seconds = steady_seconds() - viewer.started;
-    viewer.window.hide(); // what is being made takes a moment to end
+    viewer.window.hide(); // work in progress takes a moment to stop
     if (options.stats) print_report(times_text(viewer.times, viewer.thread.counts()));
 }
 }

@@ -1,4 +1,4 @@
-// The viewer: what its state, its rendering and its window do to each other, frame by frame of the interface.
+// The viewer: connects state, rendering and window once per interface frame.
 #pragma once
 #include "viewer/editing/scene_loader.h"
 #include "viewer/painting/render_thread.h"
@@ -6,7 +6,7 @@
 
 namespace tyndall {
 struct ViewerOptions {
-    ViewState state; // scene_file and all that options decide
+    ViewState state; // scene_file, and what command-line options set
     LoadOptions load;
     std::vector<Action> script;
     std::string isa;
@@ -14,7 +14,7 @@ struct ViewerOptions {
     bool stats = false;
 };
 
-// Opens a window and runs until it is closed or a script quits. Throws Error: no_display, what a script does wrong, a
+// Opens a window and runs until it is closed or a script quits. Throws Error: no_display, an error in a script, or a
 // first scene that cannot be read.
 void run_viewer(const ViewerOptions& options);
 }

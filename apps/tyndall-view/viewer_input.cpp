@@ -1,4 +1,4 @@
-// What hands and scripts do.
+// Input from the user and from scripts.
 #include "base/error.h"
 #include "base/text.h"
 #include "viewer_parts.h"
@@ -7,10 +7,10 @@
 
 namespace tyndall {
 namespace {
-constexpr double settle = 0.15; // seconds after a motion until pictures count as still
+constexpr double settle = 0.15; // seconds after the last motion until the view counts as still
 constexpr int drag_frames = 12;
-constexpr double reading = 8; // seconds that news stay
-constexpr double flying = 25; // key presses a second that holding a key counts as
+constexpr double reading = 8; // seconds an announcement stays on screen
+constexpr double flying = 25; // key presses per second that a held key counts as
 }
 
 void tell(Viewer& viewer, const std::string& message, bool is_error) {
@@ -59,7 +59,7 @@ void copy_command(Viewer& viewer, const RenderRequest& request) {
     tell(viewer, "copied: " + command, false);
 }
 
-// Does an action of any kind. Throws Error.
+// Performs an action of any kind. Throws Error.
 void perform(Viewer& viewer, const Action& action) {
     if (apply(viewer.state, action)) return;
     const auto& numbers = action.numbers;
@@ -101,7 +101,7 @@ void perform(Viewer& viewer, const Action& action) {
 }
 
 void act(Viewer& viewer, const Action& action) {
-    // A scene that hands open is no matter of the script's.
+    // A scene that the user opens is not the script's: if it fails to load, the script goes on.
     if (action.verb == Verb::open || action.verb == Verb::answer) viewer.script_place.clear();
     try {
         tell(viewer, {}, false);
@@ -112,7 +112,7 @@ void act(Viewer& viewer, const Action& action) {
 }
 
 namespace {
-// What a script may go by.
+// What the script's waiting actions test.
 ScriptFacts facts_of(const Viewer& viewer) {
     ScriptFacts facts;
     facts.now = viewer.now;
@@ -158,7 +158,7 @@ void move_scripted_mouse(Viewer& viewer) {
 }
 
 namespace {
-// Nothing when the camera looks nowhere.
+// The action bound to a key; nothing when the camera has no view direction.
 std::optional<Action> key_action(Viewer& viewer, const std::string& key) {
     try {
         return action_of_key(viewer.state, key);
@@ -168,7 +168,7 @@ std::optional<Action> key_action(Viewer& viewer, const std::string& key) {
     }
 }
 
-// Keys that are pressed now; those that fly go on while they are held.
+// Acts on keys pressed in this frame; keys that fly repeat while they are held.
 void read_keys(Viewer& viewer) {
     const ImGuiIO& io = ImGui::GetIO();
     if (io.WantTextInput || viewer.state.asked) return;

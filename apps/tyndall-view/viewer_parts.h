@@ -1,4 +1,4 @@
-// The parts of the viewer, and what hands and scripts do to them.
+// The parts of the viewer, and how input from the user and scripts acts on them.
 #pragma once
 #include "interface_times.h"
 #include "panels/panels.h"
@@ -7,10 +7,10 @@
 #include "window.h"
 
 namespace tyndall {
-// A drag of a script, point by point.
+// A mouse drag by a script, advanced once per interface frame.
 struct Drag {
     vec2 from{0}, to{0};
-    int frame = -1; // negative: there is none
+    int frame = -1; // negative: no drag
 };
 
 struct Viewer {
@@ -25,45 +25,45 @@ struct Viewer {
     uint64_t motions_seen = 0, posted = 0, posted_shown = 0;
     bool posted_moving = false;
     PanelResources resources;
-    uint64_t picture_revision = 0; // of the newest answer, with or without a picture
+    uint64_t picture_revision = 0; // of the render thread's newest answer, with or without an image
     bool new_picture = false, new_volume = false;
     PanelMemory memory;
     ScriptPlayer script;
     ScriptedInput scripted;
-    int key_frames = 0; // until a script's key is up again
+    int key_frames = 0; // interface frames until a script's key is released
     Drag drag;
-    std::string script_place; // of the action being done
-    std::string screenshot;   // to take after this frame
-    std::string file_place;   // of the snapshot being written for a script
-    std::string job_place;    // of its job
+    std::string script_place; // line of the current action in its script
+    std::string screenshot;   // file of a screenshot to take after this frame
+    std::string file_place;   // script line of the snapshot being written
+    std::string job_place;    // script line of the running job
     int files_to_come = 0;
     bool quit = false;
     InterfaceTimes times;
     JobThread jobs;
-    RenderThread thread; // ends before all else
+    RenderThread thread; // declared last: destroyed first
 
     explicit Viewer(const ViewerOptions& given)
         : options(given), window("Tyndall", given.window), state(given.state), jobs(Window::wake),
           thread(Window::wake) {}
 };
 
-void tell(Viewer& viewer, const std::string& message, bool is_error); // until the next action
+void tell(Viewer& viewer, const std::string& message, bool is_error); // shown until the next action
 
-// What came about by itself: it stays long enough to be read.
+// Shows news of background work for long enough to be read.
 void announce(Viewer& viewer, const std::string& news, bool is_error);
 
-// Whether more changes are likely at once.
+// Whether the view is playing or has just moved, so that quick images are wanted.
 bool is_moving(const Viewer& viewer);
 
-// Does an action of hands: what goes wrong is said in the window.
+// Performs a user's action; errors are shown in the window.
 void act(Viewer& viewer, const Action& action);
 
-// Does the script's next actions, until one takes time. Throws Error naming file and line.
+// Performs the script's next actions until one has to wait. Throws Error naming file and line.
 void follow_script(Viewer& viewer);
 
-// The mouse of a script's drag: there, down, along, up.
+// Advances a script's drag by one frame: move to its start, press, move along, release.
 void move_scripted_mouse(Viewer& viewer);
 
-// Keys and mouse of this frame, once it has begun.
+// Handles this frame's keys and mouse; call after Window::begin_frame().
 void read_input(Viewer& viewer);
 }

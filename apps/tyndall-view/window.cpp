@@ -21,7 +21,7 @@ std::string& last_problem() {
     return text;
 }
 
-// Of all triangles and of what they are drawn with.
+// Hash of all vertices, indices and clip rectangles.
 size_t hash_of(const ImDrawData& data) {
     size_t sum = std::hash<float>()(data.DisplaySize.x) * 31 + std::hash<float>()(data.DisplaySize.y);
     const auto add = [&](const void* bytes, size_t count) {
@@ -36,7 +36,7 @@ size_t hash_of(const ImDrawData& data) {
     return sum;
 }
 
-// Mouse and keys of this frame, instead of those that the backend of ImGui finds at its end.
+// Gives ImGui this frame's mouse and keys from the queue, in place of the state that its backend polls.
 void show_input(const InputQueue& input) {
     ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsMousePosValid(&io.MousePos)) io.MousePos = {input.mouse.x, input.mouse.y};
@@ -52,7 +52,7 @@ void show_input(const InputQueue& input) {
 
 InputQueue& queue(GLFWwindow* window) { return static_cast<Window*>(glfwGetWindowUserPointer(window))->input(); }
 
-// From now on, what hands do goes into the queue.
+// Installs callbacks that put the user's input into the queue.
 void note_input(GLFWwindow* window) {
     double x = 0, y = 0;
     glfwGetCursorPos(window, &x, &y);
@@ -111,7 +111,7 @@ Window::Window(const std::string& title, ivec2 size) {
     glfwSetDropCallback(window_, [](GLFWwindow* window, int count, const char** files) {
         if (count > 0) static_cast<Window*>(glfwGetWindowUserPointer(window))->dropped_ = files[0];
     });
-    note_input(window_); // before ImGui, which goes on to call what is there
+    note_input(window_); // before ImGui's backend, which chains to existing callbacks
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
 
@@ -121,7 +121,7 @@ Window::Window(const std::string& title, ivec2 size) {
     float scale = 1, ignored = 1;
     glfwGetWindowContentScale(window_, &scale, &ignored);
     apply_theme(scale);
-    // Panels need that much, on screens that have it.
+    // The panels need this much space, as far as the screen has it.
     GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
     const GLFWvidmode* screen = monitor ? glfwGetVideoMode(monitor) : nullptr;
     const ivec2 least = glm::min(ivec2(scale * vec2(680, 480)), screen ? ivec2(screen->width, screen->height) : size);

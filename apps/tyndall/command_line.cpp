@@ -17,7 +17,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
     return names;
 }
 
-// "; did you mean --frames?" when a name is near enough to be meant.
+// "; did you mean --frames?" when a name is close enough to suggest.
 std::string hint(std::string_view typed, const std::vector<std::string>& names) {
     const std::string nearest = nearest_name(typed, names);
     const size_t start = nearest.find_first_not_of('-');
@@ -25,7 +25,7 @@ std::string hint(std::string_view typed, const std::vector<std::string>& names) 
     return alike ? "; did you mean " + nearest + "?" : "";
 }
 
-// CLI11's own words, except where they are hard to understand.
+// CLI11's message, reworded where it is hard to understand.
 std::string reworded(const CLI::ParseError& error) {
     const std::string text = printable(error.what(), 300);
     if (error.get_name() != "ArgumentMismatch") return text;
@@ -33,7 +33,7 @@ std::string reworded(const CLI::ParseError& error) {
     return option + (text.find("received") != text.npos ? ": given more than once" : ": a value is missing");
 }
 
-// What could not be read, in one line.
+// Describes the parse error in one line.
 std::string parse_problem(const CLI::App& app, const CLI::ParseError& error) {
     const std::vector<CLI::App*> chosen = app.get_subcommands();
     const std::string program = app.get_name() + " --help";
@@ -80,7 +80,7 @@ Option Command::option(const char* names, std::string& value, const char* help, 
     return Option(app_->add_option(names, value, help)->type_name(type));
 }
 
-// Of several values each has the option's name before it; only those by position stand in a row.
+// A repeated option takes one value per occurrence of its name; only positional values may follow one another.
 Option Command::options(const char* names, std::vector<std::string>& values, const char* help, const char* type) const {
     CLI::Option* option = app_->add_option(names, values, help)->type_name(type);
     if (names[0] == '-') option->allow_extra_args(false);

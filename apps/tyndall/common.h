@@ -20,7 +20,7 @@ struct Globals {
     bool json = false, quiet = false, verbose = false;
 };
 
-// A command's work after the command line was read; returns the exit code.
+// A command's work once the command line is read; returns the exit code.
 using Run = std::function<int(const Globals&)>;
 
 Run add_bake(const Command& program);
@@ -40,32 +40,32 @@ Run add_stress(const Command& program);
 Run add_chart(const Command& program);
 Run add_view(const Command& program);
 
-// Becomes the viewer, which reads its own command line. Throws Error when it is not there.
+// Replaces this process with the viewer, which reads its own command line. Throws Error when it is not installed.
 int start_viewer(std::vector<std::string> arguments);
 
-// By steady_seconds, when the program began.
+// When the program started, on the clock of steady_seconds().
 double program_start();
 
 // Set by SIGINT and SIGTERM; long work ends soon after.
 std::atomic<bool>& cancel_flag();
-// Throws when a signal asked to stop; for work that takes no flag itself.
+// Throws Error after a signal has asked to stop; for work that does not check the flag itself.
 void stop_if_cancelled();
 
-// What the line about a stop adds for this command: what is kept, and how to go on. A text that lives on.
+// Sets what the message about a stop adds for this command: what is kept and how to continue. Pass a literal: only the
+// pointer is stored.
 void set_stop_remark(const char* remark, unsigned seconds_to_stop = 1);
-unsigned seconds_to_stop(); // after a signal; then the process ends as it stands
+unsigned seconds_to_stop(); // grace period from a signal until the process exits as is
 const char* stop_remark();  // empty where nothing is kept
 
-// Runs the program's work and gives the exit code; an exception becomes a line on stderr. Nothing is said of an error
-// that a signal has caused.
+// Runs the program's work and returns its exit code; an exception becomes a line on stderr, unless a signal caused it.
 int exit_code_of(const std::function<int()>& work);
 
-// Whether an error also becomes an openjd_fail line on stdout.
+// Sets whether exit_code_of() also prints an error as an openjd_fail line on stdout.
 void report_failure_to_openjd(bool wanted);
 
-// One line for people on stderr; foreign text in it has to be printable already.
+// Prints one line for people on stderr; text from files or users must have passed printable().
 void say(std::string_view line);
-// The data a command was asked for, on stdout. Throws Error (unwritable); a reader that has gone away is no error.
+// Prints the data a command was asked for on stdout. Throws Error (unwritable); a closed pipe is not an error.
 void print_report(std::string_view text);
 
 // An option's value as a number in low..high. Throws Error (usage) naming the option.
@@ -73,13 +73,13 @@ int64_t integer_option(std::string_view option, std::string_view text, int64_t l
 int frame_option(std::string_view text); // of --frame
 double number_option(std::string_view option, std::string_view text, double low, double high);
 // WIDTHxHEIGHT in pixels, each up to largest_side.
-inline constexpr int largest_side = 16384; // what EXR readers take
+inline constexpr int largest_side = 16384; // the most that read_exr() accepts
 ivec2 resolution_option(std::string_view option, std::string_view text);
-// Sets the instruction set of all kernels. Returns the one the bits depend on: avx2 unless another was asked for, since
-// the vector kernels round alike on avx2 and avx512 and the ray tracer takes avx2 by itself.
+// Sets the instruction set of all kernels. Returns the one that determines the bits of the result: avx2 unless avx512
+// is asked for, since the vector kernels round identically on both and Embree uses avx2 by default.
 std::string chosen_isa(const std::string& text);
-// The fastest that gives the bits of a plan's. Throws Error (usage) where this machine lacks it.
+// Sets the fastest instruction set with the same bits as the plan's. Throws Error (usage) when this machine lacks it.
 void use_planned_isa(const std::string& planned);
-// The pieces between commas.
+// Splits text at its commas.
 std::vector<std::string> comma_list(std::string_view text);
 }

@@ -24,7 +24,7 @@ extern "C" void on_stop(int signal) {
     alarm(seconds_to_stop());
 }
 
-// The work did not stop in time. What it was writing keeps its temporary name, which the next run removes.
+// The work did not stop in time. A file being written keeps its temporary name; the next run removes it.
 extern "C" void on_alarm(int) {
     for (const char* text : {"tyndall: stopped", stop_remark(), "\n"})
         if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
@@ -32,14 +32,14 @@ extern "C" void on_alarm(int) {
 }
 
 void handle_signals() {
-    std::signal(SIGPIPE, SIG_IGN); // a closed pipe and a file over the size limit are errors of the write
+    std::signal(SIGPIPE, SIG_IGN); // a closed pipe and an exceeded file size limit become errors of write()
     std::signal(SIGXFSZ, SIG_IGN);
     std::signal(SIGALRM, on_alarm);
     std::signal(SIGINT, on_stop);
     std::signal(SIGTERM, on_stop);
 }
 
-// A program started with a closed stdin, stdout or stderr must not have a picture take its place.
+// Opens /dev/null in place of a closed stdin, stdout or stderr, so that no image file takes its descriptor.
 void open_standard_streams() {
     for (int stream = 0; stream <= 2; ++stream)
         if (fcntl(stream, F_GETFD) == -1 && open("/dev/null", O_RDWR) != stream) _exit(70);

@@ -1,4 +1,4 @@
-// tyndall view: starts the viewer, a program of its own that lies beside this one.
+// tyndall view: starts the viewer, a separate program in the same folder.
 #include "base/error.h"
 #include "common.h"
 

@@ -10,7 +10,7 @@ namespace tyndall {
 namespace {
 constexpr const char* title = "Before this closes";
 
-// A scene that no scene file says yet needs a name first.
+// A scene without a scene file needs a file name first.
 void save_and_go(const ViewState& state, const EditMemory& memory, const Act& act) {
     if (!state.session->has_file) {
         act({Verb::save_as, {memory.file_name}, {}, {}});
@@ -35,7 +35,7 @@ void draw_buttons(const ViewState& state, bool unsaved, bool ends_job, const Edi
         act({Verb::answer, {"cancel"}, {}, {}});
 }
 
-// What would be lost.
+// Says what would be lost.
 void draw_losses(const ViewState& state, bool unsaved, bool ends_job, EditMemory& memory) {
     const std::string name = printable(state.scene->file.filename().string(), 60);
     if (unsaved) ImGui::Text("%s has edits that are not saved.", name.c_str());
@@ -65,7 +65,7 @@ void draw_question(const ViewState& state, const PanelResources& resources, Edit
         return;
     }
     const bool unsaved = has_unsaved_changes(*state.session), ends_job = state.job && state.asked->verb == Verb::close;
-    // The job has ended meanwhile, and nobody has to be told why.
+    // The job has ended in the meantime, without an error to show.
     if (!unsaved && !ends_job && !resources.news_is_error) act({Verb::answer, {"discard"}, {}, {}});
     draw_losses(state, unsaved, ends_job, memory);
     if (!unsaved && !resources.news.empty()) ImGui::TextWrapped("%s", resources.news.c_str());

@@ -27,7 +27,7 @@ float draw_error_legend(ImVec2 low, float width) {
         list->AddRectFilledMultiColor({from, top}, {to, top + bar}, a, b, b, a);
     }
 
-    // Powers of ten, and what they are shares of.
+    // Ticks at powers of ten, labeled in percent.
     for (double value = error_scale.low; value < 1.01 * error_scale.high; value *= 10) {
         const float x = left + (right - left) * static_cast<float>(heat_place(value, error_scale));
         const std::string text = formatted("%g %%", 100 * value);

@@ -1,11 +1,11 @@
-// Legends of false colours on a picture.
+// Legends of false-color images.
 #pragma once
 #include <imgui.h>
 
 namespace tyndall {
-// The scale of the error's colours from `low` to the right, as wide as `width`; returns its height.
+// Draws the color scale of the error with its upper left corner at `low`; returns its height.
 float draw_error_legend(ImVec2 low, float width);
 
-// That of false colours, in stops from middle grey.
+// Draws the color scale of stops from middle gray.
 void draw_stops_legend(ImVec2 low, float width);
 }

@@ -1,4 +1,4 @@
-// Files: another scene to open; the picture, a sequence of frames and baked fog to write; the bar of the job that runs.
+// The files panel: opens a scene; writes the image, a sequence or baked fog; shows the running job's progress.
 #include "../theme.h"
 #include "base/text.h"
 #include "panels.h"
@@ -14,7 +14,7 @@ namespace tyndall {
 namespace {
 constexpr const char* one_at_a_time = "One job at a time: the one below has to end first";
 
-// A file's name that follows what is shown until somebody types another.
+// A file name field that follows what is shown until the user edits it.
 void draw_name(const char* label, const std::string& usual, FileField& field) {
     if (!field.edited) field.name = usual;
     ImGui::SetNextItemWidth(-1);
@@ -28,7 +28,7 @@ void draw_range(const char* label, const Scene& scene, std::string& range) {
     tooltip("Frames: 1-48, 1-48x2 (every second), 1,5,9; empty: all of the scene's");
 }
 
-// A button that waits for the job that runs.
+// A button that is disabled while a job runs.
 bool job_button(const char* text, const ViewState& state, const std::string& help) {
     ImGui::BeginDisabled(state.job.has_value());
     const bool pressed = ImGui::Button(text);

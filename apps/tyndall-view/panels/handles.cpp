@@ -13,9 +13,9 @@
 namespace tyndall {
 namespace {
 constexpr ImU32 shade = IM_COL32(0, 0, 0, 150);
-constexpr float still = 3; // pixels of the window that a click may move by
+constexpr float still = 3; // window pixels the mouse may move in a click
 
-// The picture's pixels in the window's.
+// Maps image pixels to window pixels.
 struct Zoom {
     vec2 low;
     float scale;
@@ -23,7 +23,7 @@ struct Zoom {
     vec2 back(ImVec2 at) const { return (vec2(at.x, at.y) - low) / scale; }
 };
 
-// Lines that can be seen on any picture.
+// A line with a dark outline, visible on any image.
 void line(ImVec2 a, ImVec2 b, ImU32 color, float width) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddLine(a, b, shade, width + 2);
@@ -44,7 +44,7 @@ void rays(ImVec2 middle, float from, float to, int count, ImU32 color) {
     }
 }
 
-// A cone from its tip along a direction of the picture.
+// The outline of a cone from its tip along a direction in the image.
 void cone(ImVec2 tip, vec2 along, float length, ImU32 color) {
     const vec2 across(-along.y, along.x);
     const vec2 end = vec2(tip.x, tip.y) + length * along, side = 0.6f * length * across;
@@ -52,7 +52,7 @@ void cone(ImVec2 tip, vec2 along, float length, ImU32 color) {
     line(tip, a, color, 1.5f), line(tip, b, color, 1.5f), line(a, b, color, 1.5f);
 }
 
-// Which way a light shines in the picture; down when it shines along the view.
+// The direction a light shines in the image; down when it shines along the view.
 vec2 drawn_direction(const ViewState& state, ivec2 size, const LightIcon& icon) {
     const Camera camera = camera_now(state);
     const vec3 direction = light_place(*state.scene, icon.light, seconds_of(state)).direction;
@@ -106,7 +106,7 @@ void draw_words(ImVec2 at, const std::string& text) {
     list->AddText(low, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
 }
 
-// A spot's beam as far as its target, or as its handles.
+// A spot's beam, as long as the distance to its target; without a target, twice as long as its handles.
 void draw_beam(const ViewState& state, ivec2 size, const LightIcon& icon, const Zoom& zoom, float length) {
     const LightSource& light = state.scene->lights[icon.light];
     if (!has_cone(light)) return;
@@ -124,7 +124,7 @@ void draw_beam(const ViewState& state, ivec2 size, const LightIcon& icon, const 
     }
 }
 
-// The light and the handle of it under the pointer.
+// The light, and which of its handles, under the pointer.
 struct Grip {
     const LightIcon* icon = nullptr;
     std::optional<Handle> handle;
@@ -137,7 +137,7 @@ Grip grip_at(const std::vector<LightIcon>& icons, const LightIcon* selected, std
     return {nearest_icon(icons, pixel, reach), {}};
 }
 
-// A press selects and takes hold; moving then drags.
+// A press selects the light and begins a drag.
 void take_hold(const ViewState& state, ivec2 size, const Grip& grip, vec2 pixel, float length, EditMemory& memory,
                const Act& act) {
     memory.has_mouse = true, memory.moved = false;

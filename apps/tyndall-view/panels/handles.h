@@ -1,15 +1,16 @@
-// Lights drawn over the picture, to be selected and moved.
+// Light icons and handles over the image, for selecting and moving lights.
 #pragma once
 #include "panels.h"
 #include <imgui.h>
 
 namespace tyndall {
-// Where the whole picture lies in the window.
+// Rectangle of the whole image in the window, pixels; low is the upper left.
 struct PicturePlace {
     ImVec2 low, high;
     float height() const { return high.y - low.y; }
 };
 
-// Call after the item that takes the mouse on the picture. True when the lights have the mouse: the camera stays.
+// Call after the item that takes the mouse on the image. Returns true while a light has the mouse, so that the camera
+// stays.
 bool draw_handles(const ViewState& state, ivec2 size, const PicturePlace& place, EditMemory& memory, const Act& act);
 }

@@ -13,7 +13,7 @@
 namespace tyndall {
 namespace {
 constexpr int max_proposals = 1000;
-constexpr size_t max_lines = 9; // of the list, as far as it does not scroll
+constexpr size_t max_lines = 9; // of the list before it scrolls
 
 void small_heading(const char* text) {
     ImGui::Dummy({0, 0.2f * ImGui::GetFontSize()});
@@ -24,7 +24,7 @@ void tip(const char* text) {
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", text);
 }
 
-// A button that is dead while there is nothing to do; true when pressed.
+// A button that is disabled unless `alive`; returns true when pressed.
 bool button(const char* text, const char* help, bool alive) {
     ImGui::BeginDisabled(!alive);
     const bool pressed = ImGui::Button(text);
@@ -48,13 +48,13 @@ void draw_steps(const ViewState& state, const Act& act) {
         ImGui::TextDisabled("saved");
 }
 
-// "lantern" of lantern_12.
+// "lantern" for "lantern_12".
 std::string without_number(const std::string& name) {
     const size_t last = name.find_last_not_of("0123456789");
     return last != name.npos && last > 0 && last + 1 < name.size() && name[last] == '_' ? name.substr(0, last) : name;
 }
 
-// The first of lantern_2.json, lantern_3.json ... that there is not yet; of a bare model lantern.json before them.
+// The first free name of lantern_2.json, lantern_3.json ...; for a bare model lantern.json comes before them.
 std::string proposed_name(const SceneSession& session) {
     std::filesystem::path file = session.scene.file;
     const std::string stem = session.has_file ? without_number(file.stem().string()) : file.stem().string();
@@ -80,10 +80,10 @@ void draw_save_as(const ViewState& state, EditMemory& memory, const Act& act) {
     if (pressed) act({Verb::save_as, {memory.file_name}, {}, {}});
 }
 
-// A colour at its brightest.
+// A color scaled so that its largest component is 1.
 ImVec4 hue_of(vec3 color) { return shown_color(color / std::max(max_component(color), 1e-6f)); }
 
-// A line of the list: a dot, a name, what it is.
+// A line of the list: a color dot, the name and the kind.
 void draw_line(const ViewState& state, Thing thing, const std::string& name, const char* kind, ImVec4 color,
                const Act& act) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -101,7 +101,7 @@ void draw_line(const ViewState& state, Thing thing, const std::string& name, con
     ImGui::PopID();
 }
 
-// Those that the scene file, not the glTF, says the place of.
+// Cameras that the scene file places, not the glTF.
 std::vector<size_t> own_cameras(const Scene& scene) {
     std::vector<size_t> own;
     for (size_t i = 0; i < scene.cameras.size(); ++i)
@@ -183,7 +183,7 @@ void draw_lights(const ViewState& state, EditMemory& memory, const Act& act) {
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) memory.held.clear();
     draw_steps(state, act);
     draw_save_as(state, memory, act);
-    // A long list scrolls by itself.
+    // A long list has its own scroll bar.
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const Scene& scene = *state.scene;
     const size_t lines = scene.lights.size() + scene.media.size() + own_cameras(scene).size();

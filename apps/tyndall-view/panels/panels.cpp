@@ -1,4 +1,4 @@
-// Where the panels lie, and the list of keys.
+// Layout of the panels, and the list of keys.
 #include "panels.h"
 
 #include "../theme.h"
@@ -10,7 +10,7 @@ namespace {
 constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus;
 
-constexpr float narrow_window = 62; // in heights of type
+constexpr float narrow_window = 62; // in font heights
 
 void draw_help(const Act& act) {
     bool open = true;
@@ -31,7 +31,7 @@ void draw_help(const Act& act) {
 
 void draw_interface(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act) {
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) ++memory.edits.drags;
-    // Tab shows and hides the panels: it goes from field to field only where somebody types already.
+    // Tab toggles the panels; it moves between fields only while text is being typed.
     ImGui::PushAllowKeyboardFocus(ImGui::GetIO().WantTextInput);
     const ImVec2 whole = ImGui::GetIO().DisplaySize;
     const float type = ImGui::GetFontSize();
@@ -39,7 +39,7 @@ void draw_interface(ViewState& state, const PanelResources& resources, PanelMemo
     const float row = ImGui::GetFrameHeight(), rows = state.job ? 2 * row + ImGui::GetStyle().ItemSpacing.y : row;
     const float bar = state.panels ? rows + 2 * ImGui::GetStyle().WindowPadding.y : 0;
     const float strip = state.panels ? inspector_height(state, whole.y) : 0;
-    // In a narrow window what lies below the picture is as wide as the window, and the side as high as the picture.
+    // In a narrow window the strips below the image span the window, and the side panel is only as high as the image.
     const bool narrow = whole.x < narrow_window * type;
     const float low_width = narrow ? whole.x : whole.x - side, side_height = narrow ? whole.y - bar - strip : whole.y;
 

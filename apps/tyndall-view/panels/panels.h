@@ -1,4 +1,4 @@
-// What is drawn, and the actions that come of it.
+// The panels: what they draw, and the actions they issue.
 #pragma once
 #include "../edit_memory.h"
 #include "viewer/painting/ray_question.h"
@@ -11,35 +11,35 @@
 namespace tyndall {
 // What the panels show besides the state.
 struct PanelResources {
-    std::shared_ptr<const ShownPicture> picture; // newest with codes; null before the first
-    std::vector<LimitationGroup> limitations;    // of the mode, as far as they are known
-    std::shared_ptr<const RayAnswer> ray;        // newest; stays while things move
-    double saving = -1;                          // share of a file that is being written
-    std::string news;                            // of work that goes on beside the interface
+    std::shared_ptr<const ShownPicture> picture; // newest that has pixels; null before the first
+    std::vector<LimitationGroup> limitations;    // of the mode, once they are known
+    std::shared_ptr<const RayAnswer> ray;        // newest; kept while the view moves
+    double saving = -1;                          // fraction written of the file being saved; negative: none
+    std::string news;                            // of background work
     bool news_is_error = false;
-    std::shared_ptr<const VolumePicture> volume; // the same
+    std::shared_ptr<const VolumePicture> volume; // newest; kept while the view moves
     void *texture = nullptr, *volume_texture = nullptr;
     double seconds = 0; // since the last interface frame
 };
 
-// The name of a file: the usual one until it is typed over.
+// A file name: the default until the user edits it.
 struct FileField {
     std::string name;
     bool edited = false;
 };
 
-// What is to be opened or written.
+// Fields of the files panel.
 struct FilesMemory {
-    std::filesystem::path scene; // that the rest is about
+    std::filesystem::path scene; // that the other fields belong to
     FileField other, picture, sequence, fog;
     std::string frames, fog_frames; // empty = all of the scene's
     std::string medium;             // to bake
     bool pngs = true;
 };
 
-// What panels remember by themselves.
+// State that the panels keep from one interface frame to the next.
 struct PanelMemory {
-    std::string held_row; // a setting that was put back; its slider is dead until the mouse is up
+    std::string held_row; // setting that was reset by a double-click; ignores its slider until the mouse is up
     FilesMemory files;
     EditMemory edits;
 };
@@ -48,51 +48,51 @@ using Act = std::function<void(const Action&)>; // does an action; errors become
 
 void draw_interface(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act);
 
-// The page "Rendering" of the side.
+// The "Rendering" page of the side panel.
 void draw_rendering(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act);
 
-// Frames and playing.
+// The timeline and its playback controls.
 void draw_time(const ViewState& state, const Act& act);
 
-// Files to open and to write, and the job that writes some.
+// Files to open and to write, and the progress of the job that writes some.
 void draw_files(const ViewState& state, FilesMemory& memory, const Act& act);
 void draw_job(const JobStatus& job, const Act& act);
 
 // The technique's own settings and those it shares, as sliders.
 void draw_settings(ViewState& state, PanelMemory& memory, const Act& act);
 
-// Mode, size, samples, time and what the mode gets wrong, as one line.
+// Mode, size, samples, time and the mode's accuracy in one line.
 std::string status_line(const ViewState& state, const ShownPicture& picture);
 
-// The question that comes before unsaved edits would be lost or a job ended.
+// Asks before unsaved edits are lost or a job is ended.
 void draw_question(const ViewState& state, const PanelResources& resources, EditMemory& memory, const Act& act);
 
-// The picture with its line of status.
+// The image with its status line.
 void draw_picture(ViewState& state, const PanelResources& resources, EditMemory& edits, const Act& act);
 
-// What happens on the ray of a pixel, in the space that is left of the current window: curves on the left, the
-// techniques' answers on the right.
+// Explains the ray of a pixel, in the remaining space of the current window: curves on the left, the techniques'
+// results on the right.
 void draw_ray(const ViewState& state, const RayAnswer* answer, const Act& act);
 
-// A medium's density and its grid, in the space that is left of the current window: picture and scale on the left,
-// controls and facts on the right.
+// A medium's density and grid, in the remaining space of the current window: image and scale on the left, controls and
+// facts on the right.
 void draw_volume(const ViewState& state, const PanelResources& resources, const Act& act);
 
-// The strip below the picture: what is looked into. Its height; 0 when that is nothing.
+// The inspector, a strip below the image, and its height; 0 when it is closed.
 float inspector_height(const ViewState& state, float whole);
 void draw_inspector(ViewState& state, const PanelResources& resources, const Act& act);
 
-// The side's page for lights and fog: what there is, what the selected one is like, undo and saving.
+// The side panel's page for lights and fog: a list, the selected one's properties, undo and saving.
 void draw_lights(const ViewState& state, EditMemory& memory, const Act& act);
 
-// Whether a file is there that would be written over.
+// Whether the file exists and would be overwritten.
 bool is_taken(const std::filesystem::path& file);
 
-// A name to save the scene as, for each scene once.
+// Proposes a name to save the scene as, once per scene file.
 void propose_name(const ViewState& state, EditMemory& memory);
 
-// The two pages of the side.
+// Buttons that switch between the two pages of the side panel.
 void draw_tabs(const ViewState& state, const Act& act);
 
-ImVec4 shown_color(vec3 linear); // as bright as a screen can show it
+ImVec4 shown_color(vec3 linear); // sRGB-encoded; brighter than 1 is scaled to 1
 }

@@ -1,4 +1,4 @@
-// The picture, what the mouse does on it, and the line of status.
+// The image, what the mouse does on it, and the status line.
 #include "panels.h"
 
 #include "../theme.h"
@@ -14,10 +14,10 @@
 
 namespace tyndall {
 namespace {
-constexpr float degrees_a_height = 180; // of turning, for a drag as long as the picture is high
-constexpr float still = 3;              // pixels within which a press is a click
+constexpr float degrees_a_height = 180; // of orbit, for a drag as long as the image is high
+constexpr float still = 3;              // pixels the mouse may move in a click
 
-// The largest rectangle of the picture's shape in the space there is.
+// The largest rectangle of the image's aspect ratio that fits the space, centered.
 PicturePlace fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
     const float scale = std::min(space.x / static_cast<float>(size.x), space.y / static_cast<float>(size.y));
     const ImVec2 extent{scale * static_cast<float>(size.x), scale * static_cast<float>(size.y)};
@@ -26,7 +26,7 @@ PicturePlace fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
     return {low, {low.x + extent.x, low.y + extent.y}};
 }
 
-// Where the picture lies as it is zoomed, on whole pixels of the window.
+// Rectangle of the image at the current zoom, aligned to whole window pixels.
 PicturePlace placed(const ViewState& state, ImVec2 corner, ImVec2 space, ivec2 size) {
     if (state.zoom == 0) return fitted(corner, space, size);
     const float scale = static_cast<float>(state.zoom);
@@ -35,24 +35,24 @@ PicturePlace placed(const ViewState& state, ImVec2 corner, ImVec2 space, ivec2 s
     return {low, {low.x + scale * static_cast<float>(size.x), low.y + scale * static_cast<float>(size.y)}};
 }
 
-// What is seen of it.
+// The part of it that is visible.
 PicturePlace seen(const PicturePlace& place, ImVec2 corner, ImVec2 space) {
     return {{std::max(place.low.x, corner.x), std::max(place.low.y, corner.y)},
             {std::min(place.high.x, corner.x + space.x), std::min(place.high.y, corner.y + space.y)}};
 }
 
-// Of pictures side by side, the left one.
+// The left one of images side by side.
 PicturePlace left_of(const PicturePlace& place, int across) {
     return {place.low, {place.low.x + (place.high.x - place.low.x) / static_cast<float>(across), place.high.y}};
 }
 
-// The picture's pixel under the mouse, with its fraction.
+// Image coordinates under the mouse, in fractional pixels.
 vec2 pointed(const PicturePlace& place, const ShownPicture& picture) {
     const ImVec2 at = ImGui::GetIO().MousePos;
     return vec2(at.x - place.low.x, at.y - place.low.y) * (static_cast<float>(picture.wanted.y) / place.height());
 }
 
-// With ctrl, the mouse zooms into the picture by factors of two, about where it points, and shifts it.
+// With ctrl, the wheel zooms the image by factors of two about the mouse, and a drag pans it.
 void zoom_picture(const ViewState& state, const PicturePlace& place, const ShownPicture& picture, const Act& act) {
     const ImGuiIO& io = ImGui::GetIO();
     const float scale = place.height() / static_cast<float>(picture.wanted.y);
@@ -69,7 +69,7 @@ void zoom_picture(const ViewState& state, const PicturePlace& place, const Shown
     }
 }
 
-// Mouse on the picture: turning, shifting, looking around, nearer and further.
+// Moves the camera with the mouse: orbit, pan, look around, dolly.
 void move_camera(const PicturePlace& place, const Act& act) {
     const ImGuiIO& io = ImGui::GetIO();
     const double x = io.MouseDelta.x / place.height(), y = -io.MouseDelta.y / place.height();
@@ -85,7 +85,7 @@ void move_camera(const PicturePlace& place, const Act& act) {
     if (ImGui::IsItemHovered() && io.MouseWheel != 0) act({Verb::dolly, {}, {std::pow(0.9, io.MouseWheel)}, {}});
 }
 
-// Shift and a click without a drag ask about the pixel.
+// Shift-click without a drag explains the pixel's ray.
 void ask_about_pixel(const PicturePlace& place, const ShownPicture& picture, const Act& act) {
     const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
     const bool clicked = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left);
@@ -94,7 +94,7 @@ void ask_about_pixel(const PicturePlace& place, const ShownPicture& picture, con
     act({Verb::explain, {}, {std::fmod(pixel.x, static_cast<float>(picture.wanted.x)), pixel.y}, {}});
 }
 
-// The pixel whose ray is told about, in each of the pictures side by side.
+// Marks the pixel whose ray is explained, in each of the images side by side.
 void mark_pixel(const PicturePlace& place, const ViewState& state, const ShownPicture& picture) {
     if (!state.explain) return;
     const float scale = place.height() / static_cast<float>(picture.wanted.y), type = ImGui::GetFontSize();
@@ -117,7 +117,7 @@ struct Words {
     ImVec4 color;
 };
 
-// Words side by side on a dark band, so that they can be read on any picture. Returns its height.
+// Texts side by side on a dark band, readable on any image. Returns its height.
 float draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float pad = 0.4f * ImGui::GetFontSize(), gap = words.size() > 1 ? 2.5f * pad : 0;
@@ -136,8 +136,8 @@ float draw_band(ImVec2 at, const std::vector<Words>& words, float width) {
     return extent.y + pad;
 }
 
-// Words on one band that ends at `low`, or on bands of their own where they do not fit side by side. Returns where that
-// begins.
+// Texts on one band whose lower edge is `low`, or on one band each where they do not fit side by side. Returns the
+// upper edge.
 float draw_upwards(ImVec2 low, const std::vector<Words>& words, float width) {
     const float pad = 0.4f * ImGui::GetFontSize();
     const auto extent = [&](const std::string& text, float wrap) {
@@ -158,7 +158,7 @@ float draw_upwards(ImVec2 low, const std::vector<Words>& words, float width) {
     return low.y;
 }
 
-// What the pixel under the mouse holds, in the upper right.
+// The values of the pixel under the mouse, in the upper right.
 void draw_pixel(const PicturePlace& place, const PicturePlace& frame, const ViewState& state,
                 const ShownPicture& picture) {
     const ivec2 at(glm::floor(pointed(place, picture)));
@@ -176,7 +176,7 @@ void draw_pixel(const PicturePlace& place, const PicturePlace& frame, const View
               {{text, ImGui::GetStyle().Colors[ImGuiCol_Text]}}, 2 * width);
 }
 
-// The line between two techniques, which the mouse can take along, and their names.
+// The wipe line between two techniques, which the mouse can drag, and their names.
 void draw_wipe(const PicturePlace& place, const ViewState& state, const ShownPicture& picture, const Act& act) {
     const float type = ImGui::GetFontSize(), width = place.high.x - place.low.x;
     const float x = place.low.x + state.shown.wipe * width;
@@ -194,7 +194,7 @@ void draw_wipe(const PicturePlace& place, const ViewState& state, const ShownPic
     draw_band({x + 0.7f * type, place.low.y + 0.5f * type}, {{picture.beside, text}}, width);
 }
 
-// The names of two pictures side by side.
+// The names of two images side by side.
 void draw_names(const PicturePlace& place, const ViewState& state, const ShownPicture& picture) {
     const float type = ImGui::GetFontSize(), middle = 0.5f * (place.low.x + place.high.x);
     const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
@@ -206,7 +206,7 @@ void draw_names(const PicturePlace& place, const ViewState& state, const ShownPi
     ImGui::GetWindowDrawList()->AddLine({middle, place.low.y}, {middle, place.high.y}, IM_COL32(60, 60, 63, 255));
 }
 
-// Against what the picture is held, and how far it is from that: from `bottom` upwards.
+// The reference the image is compared with, and the errors against it, from `bottom` upwards.
 void draw_errors(const PicturePlace& place, float bottom, const ViewState& state, const ShownPicture& picture) {
     if (!picture.reference) {
         const bool wanted = state.shown.layer == ShownLayer::error || state.beside == reference_name;
@@ -261,7 +261,7 @@ std::string status_line(const ViewState& state, const ShownPicture& picture) {
 }
 
 namespace {
-// What goes on beside the picture, one band below the other.
+// Messages and progress, one band below the other.
 void draw_messages(const ViewState& state, const PanelResources& resources, ImVec2 at, float width) {
     const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const auto band = [&](const std::string& message, const ImVec4& color) {
@@ -307,7 +307,7 @@ void draw_picture(ViewState& state, const PanelResources& resources, EditMemory&
         ask_about_pixel(place, *resources.picture, act);
         mark_pixel(place, state, *resources.picture);
 
-        // Always on the picture: what it is, how good it is, what is wrong with it.
+        // Always on the image: what it is, how good it is, what is wrong with it.
         const float width = frame.high.x - frame.low.x - 2 * type;
         std::vector<Words> words{{status_line(state, *resources.picture), text_color}};
         if (resources.picture->mode == state.mode)

@@ -1,4 +1,4 @@
-// Curves over an axis of distances, drawn by ImGui.
+// Plots over distance, drawn with ImGui.
 #pragma once
 #include "volume/bricks/brick_walk.h"
 
@@ -19,7 +19,7 @@ struct Plot {
     ImVec2 at(double distance, double value) const { return {x(distance), y(value)}; }
 };
 
-// Lines and figures at round values; percents: of a share.
+// Grid lines and labels at round values; with percents, values are fractions labeled in percent.
 void draw_grid(const Plot& plot, bool percents);
 void draw_distances(const Plot& plot, float top);
 

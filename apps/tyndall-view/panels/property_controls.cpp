@@ -11,7 +11,7 @@ namespace tyndall {
 namespace {
 constexpr float label_share = 0.4f;
 constexpr float highest_sun = 89.9f; // degrees: beyond it the azimuth would be lost
-constexpr double slow = 0.002;       // of a vector's usual range, for a pixel of dragging
+constexpr double slow = 0.002;       // of a vector's slider range, per pixel of dragging
 
 bool is_degrees(const Property& property) { return std::string_view(property.unit) == "degrees"; }
 
@@ -21,7 +21,7 @@ std::string number_format(const Property& property, float value) {
     return std::string("%.3g") + (*property.unit ? " " : "") + property.unit;
 }
 
-// How far a slider goes stays as it is while it is held.
+// The range of a slider, which stays fixed while it is held.
 SliderRange held_range(const Property& property, float value, const std::string& path, const EditMemory& memory) {
     return memory.held == path ? memory.range : slider_range(property, value);
 }
@@ -42,8 +42,8 @@ float encoded(float linear) {
 }
 float decoded(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
 
-// A patch as it looks, which opens a palette, and the linear numbers. Colours brighter than a screen are picked by
-// their shade.
+// A color patch that opens a picker, and the linear values. For colors brighter than 1 the picker shows and sets their
+// ratio to the largest component.
 bool edit_color(vec3& value) {
     const float bright = std::max(max_component(value), 1.0f);
     const float side = ImGui::GetFrameHeight();
@@ -95,14 +95,14 @@ void explain(const Property& property, const std::string& path, bool keyed) {
     ImGui::EndTooltip();
 }
 
-// The mark of a value with keys, as timelines have it, left of what changes it.
+// A diamond, the usual mark of an animated value, left of its control.
 void draw_diamond(float right, float middle) {
     const float r = 0.3f * ImGui::GetFontSize(), x = right - 2 * r;
     ImGui::GetWindowDrawList()->AddQuadFilled({x, middle - r}, {x + r, middle}, {x, middle + r}, {x - r, middle},
                                               ImGui::GetColorU32(accent));
 }
 
-// The reason without the place, which is where it is shown.
+// Stores the reason without the path of the property, since it is shown at the property's control.
 void note_refusal(const ViewState& state, Part part, const std::string& path, EditMemory& memory) {
     memory.refused.clear();
     if (state.message.empty() || !state.message_is_error) return;
@@ -111,7 +111,7 @@ void note_refusal(const ViewState& state, Part part, const std::string& path, Ed
     memory.refused = path, memory.why = in_words(part, here ? state.message.substr(prefix.size()) : state.message);
 }
 
-// What is changed by the same grip of the mouse is one step; typed values stand alone.
+// Changes within one mouse drag form one undo step; each typed value is its own.
 uint64_t drag_now(const EditMemory& memory) { return ImGui::IsMouseDown(ImGuiMouseButton_Left) ? memory.drags : 0; }
 
 // A label on the left; returns whether the mouse is on it.

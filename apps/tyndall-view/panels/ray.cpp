@@ -13,9 +13,9 @@ namespace tyndall {
 using namespace ray_drawing;
 
 namespace {
-constexpr size_t max_lights = 5; // that are drawn, the brightest first
+constexpr size_t max_lights = 5; // drawn, brightest first
 
-// Told apart by colour-blind eyes too (Okabe and Ito 2008).
+// Distinguishable with color vision deficiency (Okabe and Ito 2008).
 constexpr ImU32 light_colors[max_lights] = {IM_COL32(230, 159, 0, 255), IM_COL32(86, 180, 233, 255),
                                             IM_COL32(0, 178, 134, 255), IM_COL32(213, 94, 0, 255),
                                             IM_COL32(204, 121, 167, 255)};
@@ -27,7 +27,7 @@ ImU32 faded(ImU32 color, double share) {
     return (color & ~IM_COL32_A_MASK) | (alpha << IM_COL32_A_SHIFT);
 }
 
-// A line through one value for each step, broken where steps do not count.
+// A line through one value per step, broken at steps for which counts(i) is false.
 template<class Value, class Counts>
 void draw_curve(const Plot& plot, const RayStory& story, ImU32 color, const Value& value, const Counts& counts) {
     std::vector<ImVec2> points;
@@ -91,7 +91,7 @@ void draw_light(Plot plot, const RayStory& story, std::span<const size_t> lights
     }
 }
 
-// A light's row: its colour where it shines, pale in half shadow, dark in shadows, a line out of its reach.
+// A light's row: its color where it shines, paler in penumbra, dark in shadow, a thin line beyond its reach.
 void draw_lit(const Plot& plot, const LightOnRay& light, ImU32 color) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     for (const LightStretch& stretch : light.stretches) {
@@ -115,7 +115,7 @@ void draw_lit(const Plot& plot, const LightOnRay& light, ImU32 color) {
     }
 }
 
-// Where the ray meets surfaces, through all curves.
+// Marks surfaces that the ray meets, across all plots.
 void draw_surfaces(const Plot& plot, const RayStory& story) {
     for (const SurfaceOnRay& surface : story.surfaces)
         if (surface.distance <= 1.0001 * plot.range.high)
@@ -142,7 +142,7 @@ void draw_pointer(const Plot& plot, const RayStory& story, std::span<const size_
     }
 }
 
-// The brightest of the lights that shine on some of the ray, or would without shadows.
+// The brightest lights that would reach some of the ray if there were no shadows.
 std::vector<size_t> reaching_lights(const RayStory& story) {
     std::vector<size_t> lights = drawn_lights(story, max_lights);
     std::erase_if(lights, [&](size_t l) {

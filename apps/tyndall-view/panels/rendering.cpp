@@ -1,4 +1,4 @@
-// The page "Rendering" of the side: technique, picture, camera, what is wrong, settings, times.
+// The "Rendering" page of the side panel: technique, image, camera, limitations, settings, times.
 #include "../theme.h"
 #include "base/text.h"
 #include "modes/mode.h"
@@ -60,7 +60,7 @@ void draw_modes(const ViewState& state, const Act& act) {
     }
 }
 
-// Stops to drag or to type, and a button for what they are without a hand.
+// Exposure in stops, to drag or type, and a button for automatic exposure.
 void draw_exposure(const ViewState& state, const Act& act) {
     labelled("exposure");
     if (!state.scene) return ImGui::NewLine();

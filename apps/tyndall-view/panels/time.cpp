@@ -1,4 +1,4 @@
-// The bar of time.
+// The timeline.
 #include "../theme.h"
 #include "base/text.h"
 #include "panels.h"
@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-// On the bar of time: frames for which volume files are missing.
+// Marks frames on the timeline for which volume files are missing.
 void mark_gaps(const ViewState& state) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const int first = state.scene->first_frame, count = state.scene->last_frame - first + 1;
@@ -23,7 +23,7 @@ void mark_gaps(const ViewState& state) {
     if (!state.gaps.empty()) tooltip(formatted("%zu frames lack a volume file (red)", state.gaps.size()));
 }
 
-// What is shown for them.
+// Chooses what to show for missing frames.
 void draw_gaps(const ViewState& state, const Act& act) {
     if (state.gaps.empty()) return;
     struct Way {

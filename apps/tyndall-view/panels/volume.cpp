@@ -13,7 +13,7 @@ namespace tyndall {
 namespace {
 constexpr const char* axis_names[] = {"x", "y", "z"};
 
-// Density from black to white, and the extinction that it makes.
+// The color scale of the density, with the corresponding extinction.
 void draw_scale(ImVec2 low, ImVec2 high, const VolumePicture& shown) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float type = ImGui::GetFontSize();
@@ -39,7 +39,7 @@ void draw_scale(ImVec2 low, ImVec2 high, const VolumePicture& shown) {
     }
 }
 
-// Returns where it ends on the right.
+// Returns the x of its right edge.
 float draw_density(const VolumePicture& shown, void* texture, ImVec2 low, ImVec2 high) {
     const float type = ImGui::GetFontSize();
     const ImVec2 space{high.x - low.x, high.y - low.y - 1.4f * type};

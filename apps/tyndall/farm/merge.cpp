@@ -1,4 +1,4 @@
-// tyndall merge: parts of frames, rendered apart, to the frames that one run of their plan renders.
+// tyndall merge: combines separately rendered parts into the frames that a single run of their plan renders.
 #include "common.h"
 
 #include "base/clock.h"
@@ -25,7 +25,7 @@ struct Options {
     bool remove = false, partial = false;
 };
 
-// The files that PARTS name: they themselves, or all parts of frames with those names.
+// The files that PARTS name: the files themselves, or with --parts all parts of frames with those names.
 std::vector<std::string> files_of(const Options& texts) {
     if (texts.count.empty()) {
         if (!texts.frames.empty()) fail(ExitCode::usage, "--frames", "needs --parts");
@@ -44,7 +44,8 @@ std::vector<std::string> files_of(const Options& texts) {
     return files;
 }
 
-// Those of the files that are there, at once or within so many seconds: some file systems show new files late.
+// Waits at most `seconds` for all files to exist, since some file systems show new files late. Unless `all`, drops
+// those that are missing.
 std::vector<std::string> found(std::vector<std::string> names, double seconds, bool all) {
     const auto missing = [](const std::string& name) {
         std::error_code error;
@@ -84,7 +85,7 @@ Json frame_json(int frame, const std::string& file, const FrameStats& stats, con
     return json_object(std::move(members));
 }
 
-// How a frame that misses the plan's target gets there.
+// Says how a frame that misses the plan's target can reach it.
 void say_lacking(const SavedPlan& plan, double lacking, int groups, int frame, const std::string& file) {
     const std::string place = formatted("frame %d: ", frame);
     if (lacking > 1e6)
@@ -96,7 +97,7 @@ void say_lacking(const SavedPlan& plan, double lacking, int groups, int frame, c
         formatted(" --frames %d --more %g", frame, lacking) + (groups > planned ? formatted("@%d", groups) : ""));
 }
 
-// All frames of a merge, and what came of them.
+// A merge of all frames, and its outcome.
 struct Merge {
     const Options& texts;
     const Globals& globals;
@@ -137,7 +138,7 @@ void merge_one(Merge& merge, const Scene& scene, int frame, const std::vector<Pa
     const bool whole = groups.gap.empty();
     const double lacking = whole ? groups_lacking(merge.plan.request.grouping.error, result.stats, groups.groups) : 0;
     if (lacking > 0 && !merge.globals.quiet) say_lacking(merge.plan, lacking, groups.groups, frame, file);
-    if (merge.texts.remove && whole && lacking == 0) // where more groups come, these parts are needed again
+    if (merge.texts.remove && whole && lacking == 0) // these parts are needed again when groups are added
         for (const PartFile& part : parts) std::filesystem::remove(part.file);
     merge.non_finite += result.stats.non_finite, merge.missed += lacking > 0, merge.partial += !whole;
     merge.reports.push_back(frame_json(frame, file, result.stats, groups));
@@ -157,7 +158,7 @@ int outcome(const Merge& merge) {
     return 0;
 }
 
-// Several frames without names of their own: most likely a part of another frame has come in among those of one.
+// Parts of several frames but one output name: most likely a part of another frame is given by mistake.
 [[noreturn]] void refuse_stray(const std::map<int, std::vector<PartFile>>& frames) {
     const auto parts = [](const auto& frame) { return frame.second.size(); };
     const auto &stray = *std::ranges::min_element(frames, {}, parts),

@@ -1,4 +1,4 @@
-// tyndall prepare: what all parts of a plan's frames share, made once and kept in files beside the plan.
+// tyndall prepare: computes what all parts of a plan's frames share, and caches it in files beside the plan.
 #include "common.h"
 
 #include "base/clock.h"
@@ -25,7 +25,7 @@ const char* name_of(CostKind kind) {
     return names[static_cast<size_t>(kind)];
 }
 
-// Things of one name and kind as one.
+// Merges entries of the same name and kind.
 std::vector<CacheCost> summed(const std::vector<CacheCost>& costs) {
     std::vector<CacheCost> sums;
     for (const CacheCost& cost : costs) {

@@ -1,4 +1,4 @@
-// tyndall status: what of a farm's job is finished, missing or suspicious, and the commands for what is missing.
+// tyndall status: what is finished, missing or suspicious in a farm job, and the commands that render what is missing.
 #include "common.h"
 
 #include "base/clock.h"
@@ -9,7 +9,7 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t shown = 20; // lines of a kind; --json has all
+constexpr size_t shown = 20; // lines per list; --json has all
 
 struct Options {
     std::string folder, tasks;

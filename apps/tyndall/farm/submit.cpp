@@ -1,4 +1,4 @@
-// tyndall submit: a job for a render farm, as files of its engine.
+// tyndall submit: writes a job for a render farm, in the files of its engine.
 #include "rendering/automatic.h"
 #include "rendering/plan_as_asked.h"
 
@@ -28,7 +28,7 @@
 namespace tyndall {
 namespace {
 struct Options {
-    RenderOptions render; // those that a plan takes; its output is the folder
+    RenderOptions render; // those that a plan takes; files go to `folder`, not to render.output
     std::string engine, groups, parts, chunk, cpus, memory, minutes, folder;
     bool dry_run = false, run = false, remove_parts = false;
 };
@@ -62,7 +62,7 @@ FarmJob job_of(const Options& texts, const Scene& scene) {
     return job;
 }
 
-// What the folder gets beside job.json and the plan, in the order in which it is written.
+// Name and text of the files in the folder besides job.json and the plan, in the order they are written.
 using FarmFiles = std::vector<std::pair<std::string, std::string>>;
 FarmFiles files_of(const FarmJob& job, const Scene& scene, const RenderRequest& request, const TaskLimits& limits) {
     if (job.engine == "slurm")
@@ -82,7 +82,7 @@ std::string shell_text(const std::vector<std::string>& words) {
     return text;
 }
 
-// Waits for the engine's own program, whose output goes where ours does.
+// Runs the engine's own program, with our standard streams, and waits for it.
 void run(std::vector<std::string> words) {
     std::vector<char*> pointers;
     for (std::string& word : words) pointers.push_back(word.data());
@@ -99,7 +99,7 @@ void run(std::vector<std::string> words) {
                                : formatted("was ended by signal %d; the job's files are written", WTERMSIG(status)));
 }
 
-// A job that is there already may be written again, but no other one over it.
+// The same job may be written again. Throws Error when the folder holds another job.
 void check_folder(const FarmJob& job) {
     const std::filesystem::path file = job.folder / "job.json";
     std::error_code ignored;
@@ -108,7 +108,7 @@ void check_folder(const FarmJob& job) {
              printable(job.folder.string(), 200) + " holds another job: name another folder");
 }
 
-// Everything a part needs is in the plan by then: that it can be rendered shows before anything is handed over.
+// Checks that the saved plan can be split into this many parts before the job is handed over; removes it if not.
 void check_parts_of(const FarmJob& job, const Scene& scene) {
     SavedPlan plan = load_plan(job.folder / "plan.json");
     plan.request.grouping.parts = plan.request.grouping.part = job.parts;
@@ -139,7 +139,7 @@ void write_job(const FarmJob& job, const FarmFiles& files, const Options& texts,
     save_job(job);
 }
 
-// The arrays of a job of which nothing is there yet, where its engine has such.
+// The Slurm task arrays of a job with nothing rendered yet; empty for other engines.
 std::string arrays_of_new(const FarmJob& job, const std::string& step) {
     if (job.engine != "slurm") return {};
     FarmStatus nothing;

@@ -1,4 +1,4 @@
-// tyndall info: OpenEXR pictures.
+// tyndall info: OpenEXR images.
 #include "common.h"
 #include "reports.h"
 

@@ -21,7 +21,7 @@ std::string span_text(const std::vector<double>& angles, const char* noun) {
            shortest_text(angles.back()) + " degrees";
 }
 
-// What the numbers of the file are worth.
+// Flux and peak intensity, and whether they are absolute or relative to the lamps' rating.
 std::string photometry_text(const IesFile& file, double lumens) {
     const std::string sent = formatted("%.4g lumens, peak %.4g candela", lumens, file.peak());
     if (file.absolute()) return sent + ", absolute";

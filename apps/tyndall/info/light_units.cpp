@@ -20,7 +20,7 @@ double unitless_value(const LightSource& light, double intensity) {
     return is_distant(light) ? intensity : intensity * sphere;
 }
 
-// 0 for a light whose unit is known: of the scene file, or with one of its own.
+// 0 for a light whose unit is known: one from the scene file, or one with an explicit unit.
 double exported(const LightSource& light) {
     return light.node < 0 || light.unit != LightUnit::native ? 0 : light.intensity.at(0);
 }

@@ -1,10 +1,10 @@
-// Which of the three units in use a glTF's light intensities look like.
+// Guesses which of the three units in use a glTF's light intensities have.
 #pragma once
 #include "scene/scene.h"
 
 #include <string>
 
 namespace tyndall {
-// A line for people when the intensities, read as they stand, look like one of Blender's exports; else empty.
+// A one-line hint when the intensities, taken as stored, look like one of Blender's export conventions; else empty.
 std::string light_units_hint(const Scene& scene);
 }

@@ -64,7 +64,7 @@ Json lights_json(const Scene& scene) {
     });
 }
 
-// What most programs call g: of tables and mixtures too.
+// Mean cosine of the phase function, which most programs call g; also of tables and mixtures.
 float mean_cosine_of(const MediumSource& medium) { return mean_cosine(phase_at(medium.phase, medium.g.at(0), 0)); }
 
 Json extinction_json(const MediumSource& medium) {
@@ -189,7 +189,7 @@ std::string scene_report(const std::filesystem::path& file, bool json) {
 std::string recipe_report(const std::filesystem::path& file, bool json) {
     const FogRecipe recipe = read_recipe(file);
     const dvec3 size = dvec3(recipe.bounds.high) - dvec3(recipe.bounds.low);
-    const vec3 across = glm::ceil(size / recipe.voxel_size - 0.5); // centres, as a bake has them
+    const vec3 across = glm::ceil(size / recipe.voxel_size - 0.5); // voxel centers, as tyndall bake places them
     if (json)
         return json_line({{"file", file.native()},
                           {"kind", "recipe"},

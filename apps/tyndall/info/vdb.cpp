@@ -53,7 +53,7 @@ std::string grid_text(const VdbGridInfo& grid) {
     std::string text = "  " + printable(grid.key, 80) + ": " + kind_text(grid) + "\n";
     for (const auto& [name, value] : grid_rows(grid)) text += formatted("    %-13s %s\n", name.c_str(), value.c_str());
 
-    // What stands above already, in other words, is left out.
+    // Leaves out metadata that the rows above already show.
     std::vector<std::pair<std::string, std::string>> more;
     for (const auto& entry : grid.metadata)
         if (!entry.first.starts_with("file_") && entry.first != "name" && entry.first != "class") more.push_back(entry);

@@ -24,7 +24,7 @@ struct Options {
 
 constexpr int usual_width = 320, quick_width = 128;
 
-// The scene's shape at a width that pictures can be rendered in many times.
+// The scene's aspect ratio at a width small enough to render many times.
 ivec2 chart_size(const Scene& scene, bool quick) {
     const int width = std::min(quick ? quick_width : usual_width, scene.resolution.x);
     const double shape = static_cast<double>(scene.resolution.y) / scene.resolution.x;
@@ -36,7 +36,7 @@ ChartJob make_job(const Options& texts) {
     job.render.scene_file = texts.scene;
     job.render.settings = settings_for(Quality::preview);
     for (const std::string& assignment : texts.settings) apply_setting(job.render.settings, assignment);
-    job.render.camera = texts.camera, job.render.shutter = Shutter{}; // stills are measured
+    job.render.camera = texts.camera, job.render.shutter = Shutter{}; // measured without motion blur
     job.render.isa = isa_name();
     job.modes = asked_modes("--modes", texts.modes);
     job.directory = texts.output;
@@ -53,7 +53,7 @@ ChartJob make_job(const Options& texts) {
     return job;
 }
 
-// Every file that will be written, so that what cannot be is found out before the work.
+// Checks every file that will be written, so that an unwritable one is reported before the work.
 void check_places(const ChartJob& job, OutputPlaces& places) {
     for (const char* name : {"chart.csv", "chart.json", "chart.html", "chart.svg", "chart_fog.svg",
                              "chart_sequence.svg", "points/a.json", "pictures/a.png", "reference/a.exr"})

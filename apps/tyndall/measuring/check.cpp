@@ -1,4 +1,4 @@
-// tyndall check: what is wrong with scenes, recipes, volumes and pictures, one line each.
+// tyndall check: finds problems in scenes, recipes, volumes and images, and prints a line for each.
 #include "common.h"
 #include "file_kind.h"
 
@@ -58,7 +58,7 @@ template<class Check> void guarded(const std::string& file, Problems& problems, 
     }
 }
 
-// The files of a sequence on the scene's frames, each once.
+// Checks the files of a sequence that the scene's frames use, each once.
 template<class Check>
 void check_frames(const std::string& file, const Scene& scene, const FileSequence& sequence, Problems& problems,
                   const Check& check) {
@@ -74,7 +74,7 @@ void check_frames(const std::string& file, const Scene& scene, const FileSequenc
         });
 }
 
-// Every volume the scene names, and every grid of it. Without extinction and emission its density is not looked at.
+// Checks every grid the scene reads. A density that neither extinction nor emission uses is skipped.
 void check_media(const std::string& file, const Scene& scene, Problems& problems) {
     const auto some = [](const Keyed<float>& number) {
         return std::ranges::any_of(number.values, [](float value) { return value > 0; });
@@ -105,7 +105,7 @@ void check_media(const std::string& file, const Scene& scene, Problems& problems
     }
 }
 
-// Every numbered gobo that the scene names on its frames, each file once.
+// Checks the files of animated gobos that the scene's frames use, each once.
 void check_gobos(const std::string& file, const Scene& scene, Problems& problems) {
     std::set<std::filesystem::path> seen;
     for (const LightSource& light : scene.lights)
@@ -118,7 +118,7 @@ void check_gobos(const std::string& file, const Scene& scene, Problems& problems
             });
 }
 
-// Lights that light nothing.
+// Reports lights that light nothing because geometry encloses them.
 void check_lights(const std::string& file, const Scene& scene, Problems& problems) {
     guarded(file, problems, [&] {
         for (const std::string& line : enclosed_lights(scene)) problems.push_back({file, line});
@@ -133,7 +133,7 @@ void check_scene(const std::string& file, Problems& problems) {
     check_gobos(file, scene, problems);
 }
 
-// As a part of a scene: that it has no light, fog or camera of its own is no problem.
+// Checks the file as a part of a scene: a lack of lights, fog or cameras is not a problem.
 void check_gltf(const std::string& file, Problems& problems) {
     Scene scene;
     scene.file = file;
@@ -142,7 +142,8 @@ void check_gltf(const std::string& file, Problems& problems) {
     check_lights(file, scene, problems);
 }
 
-// A numbered name stands for `frames`, or without them for all its files and the gaps between them. Returns how many.
+// Checks the files of a sequence for `frames`; if empty, for all frames from its first file to its last. Returns how
+// many.
 size_t check_sequence(const std::string& pattern, std::vector<int> frames, Problems& problems) {
     const FileSequence sequence = find_sequence(pattern, ".");
     if (frames.empty()) frames = frames_between(sequence.files.front(), sequence.files.back());
@@ -170,7 +171,7 @@ void check_file(const std::string& file, Problems& problems) {
     case FileKind::recipe:
         return static_cast<void>(read_recipe(file));
     case FileKind::schema:
-        return; // lies beside scenes and recipes; being JSON is all it needs
+        return; // found beside scenes and recipes; only has to be valid JSON
     case FileKind::gltf:
         return check_gltf(file, problems);
     case FileKind::scene:

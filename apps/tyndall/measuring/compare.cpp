@@ -1,4 +1,4 @@
-// tyndall compare: how far pictures are from a reference.
+// tyndall compare: measures the errors of images against a reference.
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "base/io/output.h"
@@ -26,7 +26,7 @@ struct MapKind {
 constexpr MapKind map_kinds[] = {{"of the reference's mean, logarithmic", {1e-3, 10, true}}, {"FLIP", {0, 1, false}}};
 enum : size_t { error_kind, flip_kind };
 
-// What the command line alone decides.
+// What the command line sets.
 struct Job {
     std::vector<Pair> pairs;
     std::vector<Bound> bounds;
@@ -75,7 +75,7 @@ Job make_job(const Options& texts, OutputPlaces& places) {
     return job;
 }
 
-// Reads references; the last one stays in memory, for it may serve all frames.
+// Reads references and keeps the last one in memory, since it may serve all frames.
 class References {
 public:
     const Picture& read(const std::string& file) {
@@ -136,7 +136,7 @@ CompareResult compare_all(const Job& job, Progress* progress) {
     return result;
 }
 
-// Undefined values (NaN) are not below any limit.
+// Undefined values (NaN) count as above any limit.
 std::vector<Exceeded> find_exceeded(const CompareResult& result, const std::vector<Bound>& bounds) {
     std::vector<Exceeded> exceeded;
     for (const Bound& bound : bounds) {

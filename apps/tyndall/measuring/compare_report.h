@@ -27,11 +27,11 @@ struct CompareResult {
 // One number of the whole result. Larger is worse for all of them.
 struct Metric {
     std::string name, doc;
-    std::optional<double> (*value)(const CompareResult&); // none where the files do not hold what it takes
+    std::optional<double> (*value)(const CompareResult&); // nullopt when the files lack the data for it
 };
 const std::vector<Metric>& metrics();
 
-// A bound given by --fail-above; throws Error (usage) naming the metrics when there is none of that name.
+// A bound given by --fail-above. Throws Error (usage) when no metric has that name.
 struct Bound {
     const Metric* metric;
     double limit;

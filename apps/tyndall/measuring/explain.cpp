@@ -47,7 +47,7 @@ RenderRequest make_request(const Options& texts) {
     request.quality = quality_named(texts.quality);
     request.settings = settings_for(request.quality);
     for (const std::string& assignment : texts.settings) apply_setting(request.settings, assignment);
-    request.camera = texts.camera, request.shutter = Shutter{}; // a ray has one moment
+    request.camera = texts.camera, request.shutter = Shutter{}; // traced at one time, without motion blur
     if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);
     if (!texts.frame.empty()) request.frames = {frame_option(texts.frame)};
     return request;
@@ -60,7 +60,7 @@ void check_outputs(const Options& texts, OutputPlaces& places) {
         check_pattern(texts.csv, ".csv", false, "--csv"), places.check(std::filesystem::path(texts.csv));
 }
 
-// The scene's own files are not to be written over.
+// Throws Error when an output would overwrite one of the scene's own files.
 void keep_inputs(const Options& texts, const Scene& scene) {
     for (const std::string& output : {texts.svg, texts.csv})
         for (const InputFile& input : scene.inputs)

@@ -1,4 +1,4 @@
-// A ray's story as JSON.
+// The explanation of a ray as JSON.
 #pragma once
 #include "measure/explain/report.h"
 

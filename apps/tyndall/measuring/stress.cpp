@@ -1,4 +1,4 @@
-// tyndall stress: the stability suite, mode by case.
+// tyndall stress: runs the stress suite, each mode on each case.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/io/file.h"
@@ -21,7 +21,7 @@ std::vector<Mode> chosen_modes(const std::string& names) {
     return chosen;
 }
 
-// Those whose name or group contains one of the pieces between commas.
+// The cases whose name or group contains one of the comma-separated patterns.
 std::vector<const StressCase*> chosen_cases(const std::string& patterns) {
     std::vector<const StressCase*> chosen;
     for (const StressCase& stress : stress_cases()) {
@@ -37,7 +37,7 @@ std::vector<const StressCase*> chosen_cases(const std::string& patterns) {
     return chosen;
 }
 
-// The cases of these that are for any of the modes, or for what all share.
+// Those of `cases` that at least one of the modes takes part in, or that test the program as a whole.
 std::vector<const StressCase*> cases_for(std::span<const Mode> chosen, std::vector<const StressCase*> cases) {
     std::erase_if(cases, [&](const StressCase* stress) {
         const auto takes = [&](const Mode& mode) { return takes_part(*stress, mode); };
@@ -63,7 +63,7 @@ void write_files(const std::filesystem::path& directory, const StressReport& rep
     write_file_atomically(directory / "stress.html", stress_html(report));
 }
 
-// Runs case by case; with an output folder, what is finished is in its files before the next case begins.
+// Runs the cases one by one; with an output folder, updates the reports there after each.
 StressReport run_cases(std::span<const StressCase* const> cases, std::span<const Mode> chosen, const Options& texts,
                        Progress& progress) {
     const std::filesystem::path directory = texts.output;

@@ -1,4 +1,4 @@
-// The results of tyndall stress as one page that needs nothing else.
+// The results of tyndall stress as one self-contained HTML page.
 #include "measuring/stress_report.h"
 
 #include "measure/report/svg.h"
@@ -16,7 +16,7 @@ td.fails { background: #f3b9b3; font-weight: 600 } summary { cursor: pointer; wh
 small { color: #666 } td table { font-size: 85%; background: #fff } td table td { border: 1px solid #ddd; min-width: 0 }
 )";
 
-// Every value of the sweep: error, what is allowed, what was said.
+// A row for every value of the sweep: error, allowed error, bias and the warning given.
 std::string points_table(const StressResult& result) {
     std::string text = "<table><tr><td>" + xml_text(result.stress->sweep) + "<td>error<td>allowed<td>bias<td>said</tr>";
     for (const StressPoint& point : result.points) {

@@ -12,7 +12,7 @@ std::string cell_text(const StressResult* result) {
     return formatted(point->silent() ? "FAILS %.3g" : "from %.3g", point->value);
 }
 
-// What went wrong at a point, or was said to.
+// What failed at a point, or the warning that said it would.
 std::string fault_text(const StressPoint& point) {
     std::string text = formatted("error %.3g, allowed %.3g", point.error, point.allowed);
     if (point.bias >= 0) text += formatted("; bias %.3g, allowed %.3g", point.bias, point.allowed_bias);

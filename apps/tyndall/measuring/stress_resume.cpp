@@ -6,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-// The entry of a list that has a text under a key, or null.
+// The first entry of a list whose value at `key` is `text`, or null.
 const Json* entry_with(const Json* list, std::string_view key, std::string_view text) {
     if (list)
         for (const Json& entry : list->items)
@@ -38,7 +38,7 @@ StressPoint point_of(const Json& json, const StressMeasure& measure) {
     return point;
 }
 
-// Of one mode; without points when they are not those of the case.
+// The result of one mode; without points when their values are not those of the case.
 StressResult result_of(const Json& json, const StressCase& stress, const std::string& mode) {
     StressResult result{&stress, mode, {}, json.number_or("seconds", 0)};
     if (const Json* points = json.find("points"))

@@ -1,4 +1,4 @@
-// tyndall verify: proves this program right, on its own scenes or on the user's.
+// tyndall verify: checks that this program is correct, on built-in scenes or on the user's.
 #include "measure/verify/verify.h"
 
 #include "base/error.h"

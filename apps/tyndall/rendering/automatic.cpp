@@ -8,11 +8,11 @@
 
 namespace tyndall {
 namespace {
-// What looking for a quicker way may take: of what the frames would take without a plan, or of their time budget; and
-// of one frame without a budget, where that is more.
+// Time for planning: a share of what all frames would take without a plan, or of their time budget; without a budget,
+// at least a share of what one frame would take.
 constexpr double planning_share = 0.05, planning_share_of_one = 0.25;
 
-// The mode of a frame that --mode auto has rendered, for the same goal; null where there is none.
+// The mode of an existing first frame that --mode auto has rendered to the same goal; null if there is none.
 const Mode* mode_before(const RenderRequest& request) {
     const std::string file = frame_name(request.output, request.frames[0]);
     if (!request.resume || !std::filesystem::exists(file)) return nullptr;
@@ -52,7 +52,7 @@ RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const S
         return make_plan(candidates, view, first, request.settings, goal, control, share);
     };
     Plan plan = plan_with(before ? std::span(before, 1) : modes());
-    if (before && !plan.chosen.gets_there()) plan = plan_with(modes()); // the scene is not what it was
+    if (before && !plan.chosen.gets_there()) plan = plan_with(modes()); // the scene has changed since
     progress.finish();
     RenderPlan result{plan.chosen.mode,
                       plan.settings,

@@ -1,4 +1,4 @@
-// --mode auto: the mode that a scene needs.
+// --mode auto: chooses a mode for a scene.
 #pragma once
 #include "common.h"
 #include "measure/plan/plan.h"
@@ -9,10 +9,10 @@ struct Scene;
 
 inline constexpr std::string_view automatic = "auto";
 
-// The error that is asked for when only a quality is.
+// The target error when only a quality is given.
 double usual_error(Quality quality);
 
-// The plan of a request by its first frame. With resume and a first frame that was
-// rendered to the same goal, that frame's mode is kept. Says what was chosen unless quiet.
+// The plan of a request, measured on its first frame. With --resume, an existing first frame that was rendered to the
+// same goal keeps its mode. Prints the choice unless quiet.
 RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const Snapshot& first, const Globals& globals);
 }

@@ -1,4 +1,5 @@
-// tyndall plan: which terms of the light a scene needs, and which mode gets to an error or the most out of a time.
+// tyndall plan: finds which lighting terms a scene needs, and which mode reaches a target error or makes the best of a
+// time budget.
 #include "measure/plan/plan.h"
 
 #include "base/error.h"
@@ -23,7 +24,7 @@
 namespace tyndall {
 namespace {
 struct Options {
-    RenderOptions render; // those that plan shares with it
+    RenderOptions render; // those shared with tyndall render
     std::string frame, save, groups;
 };
 
@@ -90,7 +91,7 @@ std::string command_of(const Plan& plan, const RenderRequest& request, bool one_
     return text;
 }
 
-// The counts of samples for a target, by the first of the frames.
+// The sample counts that the target error takes, measured on the first frame.
 PlannedSamples counted(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, int groups) {
     const Snapshot snapshot = load_first_frame(scene, request).snapshot;
     View view = view_of(scene, request, plan.settings, request.frames[0]);
@@ -100,14 +101,14 @@ PlannedSamples counted(const Scene& scene, const RenderRequest& request, const R
     return plan_samples(*plan.mode, view, snapshot, plan.settings, goal, options);
 }
 
-// What samples do not remove, in the first of the frames.
+// The error in the first frame that more samples do not reduce.
 PlannedError first_frame_error(const Scene& scene, const RenderRequest& request, const RenderPlan& plan) {
     const Snapshot snapshot = load_first_frame(scene, request).snapshot;
     const View view = view_of(scene, request, plan.settings, request.frames[0]);
     return shared_error(*plan.mode, view, snapshot, plan.settings, {false, nullptr, &cancel_flag(), {}, {}});
 }
 
-// The plan as a file that render --plan takes.
+// Saves the plan as a file for tyndall render --plan.
 int save(const std::string& file, const Scene& scene, const RenderRequest& asked, RenderPlan plan, int groups,
          const Globals& globals) {
     RenderRequest request = asked;
@@ -150,7 +151,7 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
     return 0;
 }
 
-// What stands in the way of a plan whose bits depend on nothing but it.
+// Throws Error (usage) for options that would make a saved plan's images depend on anything but the plan.
 void check_saved(const Options& texts) {
     if (!texts.frame.empty()) fail(ExitCode::usage, "--frame", "with --save the first of --frames is measured");
     if (!texts.render.time_budget.empty())

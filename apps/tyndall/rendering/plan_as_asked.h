@@ -8,7 +8,7 @@ void add_groups_option(const Command& command, std::string& groups);
 // Throws Error (usage) for options that no saved plan takes.
 void check_for_plan(const RenderOptions& render, const std::string& groups);
 
-// By the mode that is named; returns the exit code. Throws Error.
+// Saves a plan for the mode that is named; returns the exit code. Throws Error.
 int save_plan_as_asked(const RenderOptions& render, const std::string& groups, const std::string& file,
                        const Globals& globals);
 }

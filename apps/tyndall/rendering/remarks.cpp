@@ -15,7 +15,7 @@
 
 namespace tyndall {
 namespace {
-// How far multiple scattering is off, where an image is not rendered to a goal, which counts it.
+// Adds the measured error of multiple scattering, except for an image rendered to a goal, which accounts for it.
 void add_orders(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, const Snapshot& snapshot,
                 Limitations& limitations) {
     if (has_goal(request) || is_part(request.grouping) || !takes_fluence(*plan.mode, plan.settings)) return;
@@ -40,7 +40,7 @@ void say_rounding(const RenderRequest& request, const Globals& globals) {
 }
 
 namespace {
-// What the picture will not show: warnings of the files, then limitations of the mode; mere remarks only when verbose.
+// Prints warnings about the files, then the mode's limitations; those of severity info only when verbose.
 void say_limitations(const Scene& scene, const Snapshot& first, const Limitations& limitations,
                      const Globals& globals) {
     if (globals.quiet) return;

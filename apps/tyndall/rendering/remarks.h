@@ -1,4 +1,4 @@
-// What `tyndall render` says of a picture before it is rendered, and after.
+// Messages of tyndall render before and after it renders an image.
 #pragma once
 #include "common.h"
 #include "modes/limitation.h"
@@ -14,23 +14,23 @@ struct RenderRequest;
 struct Scene;
 struct Snapshot;
 
-// Where the mode fails on this scene, from the first frame, with the settings it begins with. `measured`: with how far
-// multiple scattering is off, where an image is not rendered to a goal, which counts it.
+// The mode's limitations on the first frame, with the settings it starts from. `measured` adds the measured error of
+// multiple scattering, except for an image rendered to a goal, which accounts for it.
 Limitations limitations_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan,
                            const Snapshot& snapshot, bool measured);
 
 void say_rounding(const RenderRequest& request, const Globals& globals);
 
-// What is asked for in vain, then what the picture will not show. `settings`: as the command line has them.
+// Prints options without effect, then warnings and limitations. `settings`: the arguments of --set.
 void say_before(const Scene& scene, const Snapshot& first, const Limitations& limitations,
                 const std::vector<std::string>& settings, const RenderRequest& request, const Mode& mode,
                 const Globals& globals);
 
-// Files of the cache that were found, and what they saved.
+// Prints the cache files that were found, and the time they had taken to make.
 void say_files_found(const RenderRequest& request, const Globals& globals);
 
 void say_summary(const RenderReport& report, const RenderRequest& request);
 
-// Where the pictures are, or how to get some that any program shows.
+// Says where the PNGs are, or recommends --png.
 void say_look(const RenderRequest& request);
 }

@@ -1,4 +1,4 @@
-// tyndall render: the frames of a scene to OpenEXR files, and PNGs for looking at.
+// tyndall render: renders the frames of a scene to OpenEXR files, and PNGs for viewing.
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/io/file.h"
@@ -34,7 +34,7 @@ void choose_frames(const Scene& scene, const std::string& order, RenderRequest& 
     check_pattern(request.output, ".exr", request.frames.size() > 1);
 }
 
-// Takes as many samples as measuring noise needs, and says so; half floats hide the last of it.
+// Rounds the sample count to the equal batches that measuring noise needs. Notes that, and rounding to half floats.
 void settle_noise(const RenderRequest& request, RenderPlan& plan, const Globals& globals) {
     if (request.grouping.groups > 0) return; // the plan has settled it
     const bool first_round = request.target_error > 0 && request.time_budget == 0 && error_is_noise(*plan.mode);
@@ -48,7 +48,7 @@ void settle_noise(const RenderRequest& request, RenderPlan& plan, const Globals&
     say_rounding(request, globals);
 }
 
-// What was asked for, decided and made.
+// A request with its plan and report.
 struct Rendered {
     RenderRequest request;
     RenderPlan plan;
@@ -59,13 +59,13 @@ std::string stats_name(const RenderOptions& texts, const RenderRequest& request,
     return texts.stats.empty() || !several ? texts.stats : with_word(texts.stats, request.mode);
 }
 
-// What requests for several modes have in common.
+// What the requests of several modes share.
 struct Common {
-    Snapshot first;                 // the first frame, whose fog and surfaces are shared, when it is the only one
-    std::optional<double> exposure; // of PNGs, where it is measured
+    Snapshot first;                 // the first frame, to reuse its fog and surfaces; empty unless it is the only frame
+    std::optional<double> exposure; // of PNGs, if measured
 };
 
-// Measures the exposure of PNGs for all modes alike: for the one that lets light scatter the most.
+// Measures one exposure for the PNGs of all modes, with the most scattering orders that any of them has.
 void measure_exposure(const Scene& scene, std::span<const RenderRequest> requests, const Snapshot& first,
                       Common& common, const Globals& globals) {
     const RenderRequest& request = requests[0];
@@ -78,7 +78,7 @@ void measure_exposure(const Scene& scene, std::span<const RenderRequest> request
         say(formatted("PNGs: automatic exposure, %+.1f EV (--exposure sets another)", *common.exposure));
 }
 
-// Renders the frames of one of the requests and reports on them; json is the statistics file's name, empty for none.
+// Renders the frames of one of the requests, writes its statistics file and prints a summary.
 Rendered render_frames(const Scene& scene, std::span<const RenderRequest> requests, const RenderRequest& request,
                        const RenderOptions& texts, Common& common, const Globals& globals) {
     const bool several = requests.size() > 1;
@@ -143,7 +143,7 @@ std::string sheet_name(const RenderOptions& texts, int frame) {
         .string();
 }
 
-// One PNG per frame with the pictures of all modes, the time each took, and how far it is from a reference.
+// Writes one PNG per frame with the images of all modes, their times, and their errors against a reference.
 void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const RenderOptions& texts,
                   const Globals& globals) {
     for (const int frame : all[0].request.frames) {
@@ -164,10 +164,10 @@ void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const Re
     if (!globals.quiet) say("look: " + printable(sheet_name(texts, all[0].request.frames[0])));
 }
 
-// The requests of all modes asked for, each with files of its own when there are several.
+// The requests of all modes asked for; several modes have separate output files.
 std::vector<RenderRequest> make_requests(const RenderOptions& texts) {
     std::vector<RenderRequest> requests;
-    // Until the scene is known, what is to be chosen is the main renderer.
+    // With --mode auto, the main renderer stands in until the scene is loaded.
     const std::vector<const Mode*> asked =
         asked_modes("--mode", texts.mode == automatic ? std::string(main_mode().name) : texts.mode);
     for (const Mode* mode : asked) {
@@ -177,7 +177,7 @@ std::vector<RenderRequest> make_requests(const RenderOptions& texts) {
     return requests;
 }
 
-// By a plan, or as the command line alone says.
+// The requests of a plan, or of the command line alone.
 std::vector<RenderRequest> requests_of(const RenderOptions& texts, std::optional<SavedPlan>& plan) {
     if (texts.scene.empty() && texts.plan.empty())
         fail(ExitCode::usage, "SCENE", "a scene file or --plan is required (tyndall render --help)");
@@ -191,7 +191,7 @@ std::vector<RenderRequest> requests_of(const RenderOptions& texts, std::optional
     return make_requests(texts);
 }
 
-// What was prepared for the plan's frames.
+// Opens the files that tyndall prepare made for the plan's frames; null when there are none.
 std::shared_ptr<CacheFolder> prepared_files(const RenderOptions& texts, const SavedPlan& plan,
                                             const std::vector<int>& frames, const Globals& globals) {
     std::vector<std::string> notes;
@@ -202,7 +202,7 @@ std::shared_ptr<CacheFolder> prepared_files(const RenderOptions& texts, const Sa
     return files;
 }
 
-// Refuses what does not go together, and files that cannot be written.
+// Throws Error for options that contradict each other and files that cannot be written.
 void check_requests(const RenderOptions& texts, std::vector<RenderRequest>& requests, OutputPlaces& places) {
     choice_among("--order", texts.order, {"listed", "spread"});
     if (requests.size() == 1 && !texts.sheet_reference.empty())
@@ -216,7 +216,7 @@ void check_requests(const RenderOptions& texts, std::vector<RenderRequest>& requ
     }
 }
 
-// The same, once the scene is known.
+// The checks that need the scene. Also sets the frames of the requests.
 void check_with_scene(const Scene& scene, const RenderOptions& texts, std::vector<RenderRequest>& requests,
                       OutputPlaces& places) {
     const auto size_of = [&](const RenderRequest& request) {

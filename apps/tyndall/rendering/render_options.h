@@ -17,20 +17,20 @@ struct RenderOptions {
 };
 
 void add_render_options(const Command& command, RenderOptions& texts);
-// Those that a saved plan decides, but scene and mode.
+// Adds the options that a saved plan stores, except scene and mode.
 void add_planned_options(const Command& command, RenderOptions& texts);
 
-// Those again as words of a command line, with the mode, as far as they were given.
+// The mode and those options that differ from their defaults, as words of a command line.
 std::vector<std::string> planned_words(const RenderOptions& texts);
 
-// The modes of an option: a name, several with commas between, or all. Throws Error (usage).
+// The modes named by an option: one name, several separated by commas, or all. Throws Error (usage).
 std::vector<const Mode*> asked_modes(std::string_view option, const std::string& text);
 
-// Everything the command line alone decides; throws Error (usage) before any file is touched.
+// The request that the command line alone makes. Throws Error (usage) before any file is touched.
 RenderRequest make_request(const RenderOptions& texts, const Mode& mode);
 LoadOptions load_options(const RenderOptions& texts);
 
-// What --plan and the options beside it ask for. Throws Error (usage) for one that the plan has decided.
+// The request that --plan and the options beside it make. Throws Error (usage) for an option that the plan fixes.
 RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan);
 void check_crop(const RenderRequest& request, ivec2 picture);
 }

@@ -1,4 +1,4 @@
-// What the options of tyndall render ask for.
+// Turns the options of tyndall render into requests.
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "base/io/output.h"
@@ -35,10 +35,10 @@ std::vector<std::string> parsed_layers(const std::string& text) {
     return layers;
 }
 
-// A mode whose only error is noise gets so many times the quality's samples.
+// Factor on the quality's sample count for a mode whose only error is noise.
 constexpr int noisy_factor = 16;
 
-// --orders, for modes that follow light further than once.
+// --orders, for modes that render multiple scattering.
 void read_orders(const std::string& text, RenderRequest& request) {
     const int orders = text == "all" ? all_orders : static_cast<int>(integer_option("--orders", text, 1, all_orders));
     if (find_mode(request.mode).accuracy == Accuracy::multiple_scattering)
@@ -50,7 +50,8 @@ void read_orders(const std::string& text, RenderRequest& request) {
              request.mode + " scatters light once only; --mode march, froxel and path take more");
 }
 
-// A goal decides how many samples there are, but that path begins with as many as asked for when time is no matter.
+// Throws Error (usage) for a sample count together with a goal, which determines it; without a time budget, path takes
+// one to start from.
 void check_samples(const RenderRequest& request, const Mode& mode) {
     if (!has_goal(request) || (error_is_noise(mode) && request.time_budget == 0)) return;
     if (request.settings.pixel.samples != settings_for(request.quality).pixel.samples)
@@ -168,7 +169,7 @@ void read_part_option(const std::string& text, Grouping& grouping) {
     grouping.part = static_cast<int>(integer_option("--part", text.substr(0, slash), 1, grouping.parts));
 }
 
-// The options that a plan has decided.
+// Throws Error (usage) for options that a plan fixes.
 void check_planned(const RenderOptions& texts) {
     const RenderOptions usual;
     const std::tuple<const char*, bool> decided[] = {{"SCENE", !texts.scene.empty()},

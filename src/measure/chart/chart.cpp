@@ -27,7 +27,7 @@ double load_average() {
     return getloadavg(&load, 1) == 1 ? load : not_measured;
 }
 
-// Frames around the chart's own, or, where the scene has too few, the one with time standing still.
+// Frames around the chart's own; if the scene has too few, the same frame with other noise.
 std::vector<SequenceFrame> make_sequence(const Scene& scene, const ChartJob& job, const Snapshot& snapshot) {
     const int last = scene.last_frame - job.sequence + 1;
     const bool moves = job.sequence > 1 && last >= scene.first_frame;
@@ -51,10 +51,10 @@ ChartStage make_stage(const Scene& scene, const ChartJob& job, std::atomic<bool>
     return stage;
 }
 
-// What finding out how long the work will take takes of the progress.
+// Share of the progress bar for estimating how long the work will take.
 constexpr double share_of_planning = 0.05;
 
-// The parts of the work by the seconds they are expected to take.
+// Progress over the parts of the work, weighted by the seconds they are expected to take.
 class Plan {
 public:
     explicit Plan(const ChartControl& control) : control_(control) {}
@@ -75,10 +75,10 @@ struct Task {
     ChartRung rung;
     std::string hash;
     std::optional<ChartPoint> kept;
-    double seconds = 0; // of a picture
+    double seconds = 0; // expected for an image
 };
 
-// Seconds of all that is done for a point; frames of the sequence are smaller.
+// Seconds to measure a whole point; frames of the sequence are smaller.
 double seconds_of(const Task& task, const ChartJob& job) {
     return task.seconds * (job.runs + 1 + static_cast<double>(job.sequence) / (job.smaller * job.smaller));
 }
@@ -144,13 +144,13 @@ void render_references(ChartStage& stage, References& references, Chart& chart, 
         if (unlit) stage.sequence_lights.push_back(make_yardstick(frame, true));
     }
 
-    // Half the difference of the halves is what their mean is off by.
+    // Half the difference of the halves estimates the error of their mean.
     const Image<vec3>&a = reference.halves[0].color, &b = reference.halves[1].color;
     chart.reference_noise = relative(0.5 * measure_errors(a, b).rmse, stage.all.mean);
     chart.reference_flip = flip_mean(flip_hdr(a, b, stage.all.viewing.exposures, flip_pixels_per_degree));
 }
 
-// Without modes that are held against the light of lamps and suns alone, where there are none.
+// Drops modes that are compared by the light of lamps and suns alone when the scene has none.
 ChartJob job_for(const Scene& scene, ChartJob job, const ChartControl& control) {
     if (!scene.lights.empty() || !wants_unlit(job)) return job;
     const std::string why = "path takes no part: it is held against the light of lamps and suns, and there are none";
@@ -177,8 +177,8 @@ std::string line_on(const ChartPoint& point) {
                      static_cast<int>(point.samples), point.seconds_1, point.errors.error);
 }
 
-// What is there already, what would take too long, and how long the rest will take. What comes after a rung of a mode
-// that takes too long takes longer still.
+// Finds points to reuse, leaves out rungs that would take too long, and estimates the time of the rest. Rungs after one
+// that is left out take longer still.
 std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& references, FileHashes& files, Chart& chart,
                              const ChartControl& control) {
     std::vector<Task> tasks;

@@ -12,27 +12,28 @@ inline constexpr double not_measured = std::numeric_limits<double>::quiet_NaN();
 inline constexpr ChartErrors no_errors{not_measured, not_measured, not_measured, not_measured, not_measured,
                                        not_measured, not_measured, not_measured, not_measured};
 
-// A mode at one of its settings. Times are wall-clock seconds, errors shares of the reference's mean.
+// A mode at one rung of its ladder of settings. Times are wall-clock seconds, errors are relative to the reference's
+// mean.
 struct ChartPoint {
-    std::string mode, settings; // settings: rows for --set that make the rung, with spaces between
+    std::string mode, settings; // settings: the rung's arguments of --set, separated by spaces
     double rung = 0, samples = 0, runs = 0;
-    double setup_seconds = 0;                                       // on top of a frame: what frames that follow share
+    double setup_seconds = 0; // on top of a frame; shared by the frames that follow
     double frame_seconds = 0, frame_fastest = 0, frame_slowest = 0; // median of the runs; their range
-    double seconds_1 = 0, seconds_100 = 0; // a frame with its share of the set-up for 1 and 100
-    double cpu_seconds = 0;                // of all threads together, for a frame and its set-up
-    double memory_bytes = not_measured;    // most on top of the scene
+    double seconds_1 = 0, seconds_100 = 0;                          // a frame with its share of the setup for 1 and 100
+    double cpu_seconds = 0;             // of all threads together, for a frame and its setup
+    double memory_bytes = not_measured; // peak on top of the scene
     ChartErrors errors;
-    double fog_error = 0, fog_uncertainty = 0; // rmse of the fog light at pixel centres, which rays per pixel do not
-                                               // decide: what the technique itself is off by
+    double fog_error = 0, fog_uncertainty = 0; // rmse of the fog light at pixel centers, independent of the rays per
+                                               // pixel: the technique's own error
     double flicker = not_measured;
-    double gain = not_measured;     // of looks: the factor on their fog light that fits best
-    ChartErrors fitted = no_errors; // with it
+    double gain = not_measured;     // of artistic modes: the best-fitting factor on their fog light
+    ChartErrors fitted = no_errors; // with that gain
     double fitted_fog_error = not_measured;
-    double best_1 = 0, best_100 = 0, best_fog = 0; // 1: unbeaten by E, for 1 and for 100 frames; by fog light, for 1
+    double best_1 = 0, best_100 = 0, best_fog = 0; // 1: unbeaten() by E, for 1 and for 100 frames; by fog light, for 1
     double non_finite = 0;                         // samples left out
 };
 
-// The numbers of a point by name, in the order of reports.
+// The fields of a point by name, in the order of reports.
 struct ChartField {
     std::string name, doc;
     double& (*of)(ChartPoint&);
@@ -41,23 +42,23 @@ const std::vector<ChartField>& chart_fields();
 double value_of(const ChartField& field, const ChartPoint& point);
 
 std::string point_name(const ChartPoint& point); // "march.3"
-bool is_look(const ChartPoint& point);           // a mode that promises no light; it has a gain
+bool is_look(const ChartPoint& point);           // of an artistic mode; it has a gain
 
 struct ChartJob {
-    RenderRequest render; // scene file, camera, picture size, settings that rungs do not decide
+    RenderRequest render; // scene file, camera, image size, settings that rungs do not change
     int frame = 1;
     std::vector<const Mode*> modes;
     ReferenceSamples reference{};
-    int runs = 3;                    // of each picture, at least
-    double longest = 60;             // seconds a picture may take; rungs that would take longer are left out
+    int runs = 3;                    // of each image, at least
+    double longest = 60;             // seconds an image may take; rungs that would take longer are left out
     int sequence = 4;                // frames that flicker is measured on
-    int smaller = 4;                 // their width and height as a share of the picture's
-    std::filesystem::path directory; // for what is kept
+    int smaller = 4;                 // factor by which their width and height are smaller than the image's
+    std::filesystem::path directory; // of points and references, reused by later runs
 };
 
-// A rung that was left out, and the seconds its picture would have taken: that many or more.
+// A rung that was left out, and the least seconds its image would have taken.
 struct LeftOut {
-    std::string mode, settings; // as of a point
+    std::string mode, settings; // as in ChartPoint
     int rung = 0;
     double seconds = 0;
 };
@@ -74,41 +75,41 @@ struct Chart {
     ivec2 size{0}, sequence_size{0};
     int threads = 0;
     std::string isa;
-    double load_before = 0, load_after = 0; // processes that wanted to run, a mean over the last minute
+    double load_before = 0, load_after = 0; // load average of the last minute
     bool moves = false;                     // the frames of the sequence differ
-    double reference_noise = 0;             // of the mean of both halves, as a share of its mean
-    double reference_flip = 0;              // between the halves: what FLIP says of noise alone
+    double reference_noise = 0;             // of the mean of both halves, relative to its mean
+    double reference_flip = 0;              // between the halves: FLIP of noise alone
     std::vector<ChartedMode> modes;
-    std::vector<ChartPoint> points; // mode by mode, from quick to careful
+    std::vector<ChartPoint> points; // by mode, from fast to accurate
     std::vector<LeftOut> left_out;
-    int kept = 0; // points that an earlier run had measured
+    int kept = 0; // points reused from an earlier run
     double seconds = 0;
 };
 
-// Whether other work ran beside it, which makes times longer.
+// Whether other work was running, which makes times longer.
 inline bool was_loaded(const Chart& chart) { return chart.load_before > chart.threads + 0.5; }
 
 struct ChartControl {
     std::atomic<bool>* cancel = nullptr;
     std::function<void(double)> progress;           // 0..1
-    std::function<void(const std::string&)> remark; // a line on each point
+    std::function<void(const std::string&)> remark; // a line for each point
 };
 
-// Points are kept in the job's directory as soon as they are measured; those that are there and made from the same
-// scene, settings and number of threads are not measured again. Throws Error.
+// Writes each point to the job's directory as soon as it is measured, and reuses those there of the same scene,
+// settings and number of threads. Throws Error.
 Chart make_chart(const Scene& scene, const ChartJob& job, const ChartControl& control);
 
-// What a point is placed by: its time, and its error as it comes; no less than what the reference's noise hides.
+// A point's coordinates in a drawing: its time, and its error, but at least the uncertainty from the reference's noise.
 enum class FrameTime { single, sequence };
-enum class ErrorOf { worse, fog }; // picture or fog light, whichever is worse (E); fog light at pixel centres
+enum class ErrorOf { worse, fog }; // image or fog light, whichever is worse (E); fog light at pixel centers
 double seconds_of(const ChartPoint& point, FrameTime time);
 double error_of(const ChartPoint& point, ErrorOf what);
 
-// Whether no other point is both as quick and as good, and better in one of the two.
+// Whether a point is Pareto-optimal: no other is at least as fast and as accurate, and better in one of the two.
 bool unbeaten(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what);
 void mark_best(std::vector<ChartPoint>& points);
 
-// Where a point's pictures lie, relative to the directory: the picture, its error, and both small.
+// A point's files, relative to the directory: its numbers, its image and error map, and thumbnails of both.
 struct PointFiles {
     std::filesystem::path values, picture, errors, small_picture, small_errors;
 };

@@ -10,15 +10,15 @@ namespace tyndall {
 // Mode, settings and every field; numbers that are not finite are null.
 Json json_of_point(const ChartPoint& point);
 
-// One hash over all that a point's numbers depend on but for the machine and its load.
+// Hash of all that a point's numbers depend on, except the machine and its load.
 std::string point_hash(const ChartStage& stage, const ChartRung& rung, const std::string& references,
                        FileHashes& files);
 
-// A point of that hash whose pictures are there too. What is damaged counts as missing.
+// The stored point with that hash, if its images exist too. Damaged files count as missing.
 std::optional<ChartPoint> cached_point(const std::filesystem::path& directory, const ChartRung& rung,
                                        const std::string& hash);
 
-// Writes a point's pictures, then its numbers. Throws Error (unwritable).
+// Writes a point's images, then its numbers. Throws Error (unwritable).
 void keep_point(const std::filesystem::path& directory, const MeasuredPoint& measured, const std::string& hash,
                 const Display& display);
 }

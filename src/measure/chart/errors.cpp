@@ -23,9 +23,9 @@ double mean_square(const Image<vec3>& picture, const Image<vec3>& a, const Image
     return product_of_errors(picture, picture, a, b).value;
 }
 
-// Standard deviation of the mean of (A − R1)·(A − R2) = (A − R)² − d²/4 with R the mean of the halves and d their
-// difference, normal with a variance of 2v: R has the variance v/2, which d²/4 estimates, and d²/4 varies by d⁴/24.
-// Channels of a pixel vary together, pixels on their own.
+// Standard deviation of the mean of (A − R1)·(A − R2) = (A − R)² − d²/4, where R is the mean of the halves and d their
+// difference, normal with variance 2v. The variance of R is v/2, estimated by d²/4; that of d²/4 is estimated by d⁴/24.
+// The channels of a pixel are taken as fully correlated, pixels as independent.
 double noise_of_square(const Image<vec3>& picture, const Image<vec3>& a, const Image<vec3>& b) {
     double variance = 0;
     for (size_t i = 0; i < picture.pixels.size(); ++i) {
@@ -38,7 +38,7 @@ double noise_of_square(const Image<vec3>& picture, const Image<vec3>& a, const I
 
 double root_share(double square, double mean) { return relative(std::sqrt(std::max(square, 0.0)), mean); }
 
-// Of a root, from the standard deviation of its square; of none it is the deviation's own root.
+// Uncertainty of a root from the standard deviation of its square; for a square of 0, the root of the deviation.
 double uncertainty(double square, double deviation, double mean) {
     const double root = std::sqrt(std::max(square, 0.0));
     return relative(std::sqrt(root * root + deviation) - root, mean);

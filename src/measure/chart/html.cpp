@@ -1,4 +1,4 @@
-// The page of a chart.
+// The HTML page of a chart.
 #include "base/text.h"
 #include "measure/chart/page.h"
 #include "measure/chart/report.h"

@@ -1,9 +1,9 @@
-// Styles and script of a chart's page. The script only shows what the page holds already.
+// Styles and script of a chart's page. The script only shows tooltips, made from what is in the page.
 #pragma once
 #include <string_view>
 
 namespace tyndall {
-// Of the drawings, on the page and in files of their own.
+// Style of the drawings, on the page and in separate files.
 inline constexpr std::string_view chart_svg_style = R"css(
 svg.chart { color: #1a1a1a; max-width: 860px; } svg.chart text { font-family: system-ui, Helvetica, Arial, sans-serif; }
 .paper, .hollow { fill: #fff; }
@@ -48,7 +48,7 @@ th:first-child, td:first-child, td.words, th.words { text-align: left; }
   .rung { width: 150px; } h2 { break-after: avoid; } .wide { overflow: visible; } }
 )css";
 
-// A mark's id names the table row with its numbers and the pictures in the gallery.
+// A mark's id names the table row with its numbers and the images in the gallery.
 inline constexpr std::string_view chart_page_script = R"js(
 "use strict";
 const tip = document.getElementById("tip");

@@ -17,7 +17,7 @@
 
 namespace tyndall {
 namespace {
-constexpr double shortest_measurement = 0.25; // seconds of runs, which quick pictures take more of
+constexpr double shortest_measurement = 0.25; // seconds that runs last together, up to max_runs
 constexpr int max_runs = 5;
 
 double median(std::vector<double> values) {
@@ -26,7 +26,7 @@ double median(std::vector<double> values) {
     return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-// The scene as the mode is measured on it, nothing made yet.
+// The snapshot that the mode is measured on, with nothing cached.
 Snapshot seen_by(const Mode& mode, const Snapshot& snapshot) {
     Snapshot result = fresh(snapshot);
     if (lights_only(mode)) result.background = {};
@@ -39,7 +39,7 @@ View view_for(const ChartStage& stage, const Settings& settings, ivec2 size, int
     return view_of(stage.scene, request, settings, frame);
 }
 
-// Of all threads of the process.
+// Processor time of all threads of the process.
 double processor_seconds() {
     timespec now{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -52,7 +52,7 @@ struct Times {
     double memory = not_measured;
 };
 
-// Renders the picture and prepares the next frame's, once.
+// Renders the image and prepares the next frame, once each.
 Layers timed_run(const ChartStage& stage, const Mode& mode, const Settings& settings,
                  const std::function<void(double)>& progress, Times& times, double& non_finite) {
     const ivec2 size = stage.job.render.resolution;
@@ -92,7 +92,7 @@ void take_times(const Times& times, ChartPoint& point) {
     point.memory_bytes = times.memory;
 }
 
-// What the technique is off by where neither edges nor lamps inside of pixels matter.
+// Measures the technique's own error at pixel centers, where edges and lamps inside pixels do not matter.
 void measure_centers(const ChartStage& stage, const Mode& mode, Settings settings, ChartPoint& point) {
     settings.pixel.filter = PixelFilter::center;
     const View view = view_for(stage, settings, stage.job.render.resolution, stage.job.frame);
@@ -154,7 +154,7 @@ std::string rows_of(const Settings& settings) {
 double expected_seconds(const ChartStage& stage, const ChartRung& rung) {
     Settings settings = settings_of(rung);
     const int samples = settings.pixel.samples;
-    settings.pixel.samples = std::min(samples, 4); // edges take more rays from four on
+    settings.pixel.samples = std::min(samples, 4); // from four on, pixels with edges take more rays
     const ivec2 size = stage.job.render.resolution, small = glm::max(size / 2, ivec2(1));
     FrameOptions options;
     options.cancel = stage.cancel;

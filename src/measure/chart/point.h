@@ -1,4 +1,5 @@
-// One picture of a chart: rendered several times, timed, held against the reference. Internal to the chart.
+// Measures one point of a chart: renders its image several times and compares it with the reference. Internal to the
+// chart.
 #pragma once
 #include "measure/chart/chart.h"
 #include "trace/snapshot.h"
@@ -8,20 +9,20 @@ namespace tyndall {
 struct SequenceFrame {
     Snapshot snapshot;
     int frame = 0;   // of the scene
-    int pattern = 0; // of noise that changes from frame to frame
+    int pattern = 0; // frame number that noise is seeded with
 };
 
-// All that the points of a chart share.
+// What all points of a chart share.
 struct ChartStage {
     const Scene& scene;
     const ChartJob& job;
-    Snapshot snapshot, next; // of the frame, and of the one after, which shares what stands still
+    Snapshot snapshot, next; // of the frame, and of the one after, which shares what is static
     int next_frame = 0;
     std::vector<SequenceFrame> sequence;
     ivec2 sequence_size{0};
-    // For modes that are measured by all light, and for those that are measured by that of the lights alone.
+    // For modes that are compared by all light, and for those compared by the light of lamps and suns alone.
     ReferenceMetrics all, lights;
-    ReferenceMetrics centers_all, centers_lights; // at pixel centres
+    ReferenceMetrics centers_all, centers_lights; // at pixel centers
     std::vector<ReferenceMetrics> sequence_all, sequence_lights;
     std::atomic<bool>* cancel = nullptr;
 };
@@ -34,24 +35,24 @@ struct ChartRung {
 };
 std::vector<ChartRung> rungs_of(const ChartJob& job);
 
-// Whether ambient light, emission and background are left out of the mode's pictures: path would shadow and scatter
-// them, which the reference does not.
+// Whether ambient light, emission and background are left out of the mode's images: path would shadow and scatter them,
+// which the reference does not.
 bool lights_only(const Mode& mode);
 
 // The settings of a rung; light scatters once.
 Settings settings_of(const ChartRung& rung);
 
-// What differs from the usual settings, as rows for --set with spaces between.
+// The settings that differ from those of quality preview, as arguments of --set separated by spaces.
 std::string rows_of(const Settings& settings);
 
-// About the seconds that a picture will take, from a smaller one with few samples per pixel. Also wakes caches and what
-// belongs to the scene's triangles.
+// Estimates the seconds an image will take, from a smaller one with few samples per pixel. Also warms caches and builds
+// what belongs to the scene's triangles.
 double expected_seconds(const ChartStage& stage, const ChartRung& rung);
 
 struct MeasuredPoint {
     ChartPoint point;
-    Image<vec3> picture; // to look at
-    Image<float> errors; // at each pixel, as a share of the reference's mean
+    Image<vec3> picture; // for display
+    Image<float> errors; // at each pixel, relative to the reference's mean
 };
 MeasuredPoint measure_point(const ChartStage& stage, const ChartRung& rung,
                             const std::function<void(double)>& progress);

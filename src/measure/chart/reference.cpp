@@ -19,7 +19,7 @@
 
 namespace tyndall {
 namespace {
-constexpr uint32_t half_seeds[2] = {0x52454641u, 0x52454642u}; // unlike those of any picture measured
+constexpr uint32_t half_seeds[2] = {0x52454641u, 0x52454642u}; // no image that is measured has them
 constexpr uint32_t use_exact = 0xe8acu;
 constexpr int exact_samples = 4; // of each pixel
 const ExrOptions exact_colors{{"inscatter"}, true};
@@ -44,7 +44,7 @@ Image<vec3> layer_of(const ExrFile& exr, const std::string& name) {
     return image;
 }
 
-// What integrates fog quickly enough for the noise wanted.
+// The settings of the main mode that integrate fog fast enough for the goal's noise.
 std::shared_ptr<const Choice> choice_for(const Shot& shot, const Snapshot& snapshot, const Goal& goal) {
     FrameOptions options;
     options.cancel = shot.cancel;
@@ -59,8 +59,8 @@ Goal goal_of(const Shot& shot, ReferenceSamples samples) {
     return {std::sqrt(2.0) * samples.noise, samples.seconds, shot.request.quality, steady_seconds};
 }
 
-// Half of a reference with noise in place of a count, on two levels (Heinrich 2001, multilevel Monte Carlo): many
-// samples that are quick, and the mean difference that exact ones make, from few, which differ little.
+// Half of a reference rendered to a target noise, by two-level Monte Carlo (Heinrich 2001, multilevel Monte Carlo):
+// many fast samples, plus the mean difference between exact and fast ones, whose variance is low, from a few.
 Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderRequest& request, View view,
                      const Goal& goal, const FrameOptions& options, FrameStats& stats) {
     const Mode& mode = find_mode(request.mode);
@@ -81,7 +81,7 @@ Layers half_by_noise(const Shot& shot, const Snapshot& snapshot, const RenderReq
     return result;
 }
 
-// The picture asked for, or the file an earlier run made of it. `goal` gets its choice when that is first needed.
+// The image asked for, rendered or read from the file of an earlier run. Sets goal->choice when it is first needed.
 ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderRequest& request, Goal* goal,
                      const std::string& name, std::string hash, const std::function<void(double)>& progress) {
     const View view = view_of(shot.scene, request, request.settings, shot.frame);
@@ -142,7 +142,7 @@ Reference make_reference(const Shot& shot, ReferenceSamples samples, FileHashes&
     const std::string prefix = (samples.centers ? "centers." : "picture.") + std::to_string(shot.request.resolution.x) +
                                "x" + std::to_string(shot.request.resolution.y) + "." + std::to_string(shot.frame);
     const bool by_noise = samples.count == 0;
-    Goal goal = goal_of(shot, samples), unlit_goal = goal; // both halves are made alike
+    Goal goal = goal_of(shot, samples), unlit_goal = goal; // both halves use the same choice
     Reference result;
     for (size_t half = 0; half < 2; ++half) {
         if (half == 1 && !chance) {

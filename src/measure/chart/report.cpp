@@ -1,4 +1,4 @@
-// CSV, JSON and words.
+// CSV, JSON and text.
 #include "measure/chart/report.h"
 
 #include "base/json/json.h"
@@ -43,7 +43,7 @@ Json left_out_json(const Chart& chart) {
 
 constexpr double max_advised_error = 0.5;
 
-// The point that answers a need, by the time and the error that count.
+// The best point for a need, by the given kinds of time and error.
 std::optional<ChartPoint> answer(const Chart& chart, const Advice& need, FrameTime time, ErrorOf what) {
     const ChartPoint* best = nullptr;
     for (const ChartPoint& point : chart.points) {

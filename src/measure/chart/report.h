@@ -1,4 +1,4 @@
-// A chart as files: numbers for programs, and a page for people that needs nothing but itself.
+// A chart as files: CSV and JSON for programs, and a self-contained HTML page.
 #pragma once
 #include "measure/chart/chart.h"
 
@@ -9,20 +9,20 @@ std::string chart_csv(const Chart& chart);
 std::string chart_json(const Chart& chart);
 std::string chart_text(const Chart& chart); // a few lines: what to use when, and what was left out
 
-// Why settings were left out, and each of them; empty when none was.
+// Why settings were left out; empty when none was.
 std::string left_out_reason(const Chart& chart);
 std::string left_out_words(const LeftOut& rung); // "march 5, 1.2 s or more: pixel.samples=64"
 
-// A page with inline pictures, read from the chart's directory. Throws Error (unreadable).
+// A page with inline images, read from the chart's directory. Throws Error (unreadable).
 std::string chart_html(const Chart& chart);
 
 // Error against time, both logarithmic; the marks carry data-id="march.3" and the names of the `chart_page` styles.
 std::string chart_svg(const Chart& chart, FrameTime time, ErrorOf what);
 std::string chart_svg_file(const Chart& chart, FrameTime time, ErrorOf what); // with its style
 
-// The answers to a need: the quickest point with an error of at most `error`, or the best within `seconds`.
+// The points that meet a need: the fastest with an error of at most `error`, or the most accurate within `seconds`.
 struct Advice {
-    double error = 0, seconds = 0;                   // one of the two
+    double error = 0, seconds = 0;                   // one of the two; the other is 0
     std::optional<ChartPoint> single, sequence, fog; // by E, for 1 and for 100 frames; by fog light, for 1
 };
 std::vector<Advice> advice_of(const Chart& chart);
@@ -33,7 +33,7 @@ std::string share_words(double share);
 std::string bytes_words(double bytes);
 std::string need_words(const Advice& advice); // "an error of at most 5 %"
 
-// How a mode is drawn: a colour that colour-blind eyes can tell (Okabe and Ito 2008) and a shape of its own.
+// A mode's color, distinguishable with color vision deficiency (Okabe and Ito 2008), and its marker shape.
 struct MarkStyle {
     std::string color;
     int shape; // 0 to 7

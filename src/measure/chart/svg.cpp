@@ -1,4 +1,4 @@
-// The picture of a chart, as SVG: to be read at the width of a column, on paper and on dark screens.
+// The drawing of a chart as SVG, legible at the width of a column, on paper and on dark screens.
 #include "measure/report/svg.h"
 #include "base/text.h"
 #include "measure/chart/page.h"
@@ -10,14 +10,14 @@
 
 namespace tyndall {
 namespace {
-constexpr double width = 640, left = 78, right = 626, top = 12, bottom = 400; // of the plot in the picture
+constexpr double width = 640, left = 78, right = 626, top = 12, bottom = 400; // of the plot in the drawing
 constexpr double legend_top = 474, legend_row = 23, legend_column = 152;
 constexpr int legend_columns = 4, max_ticks = 8;
 
-// Errors above do not stretch the axis: they stand in a strip of their own over a break.
+// Errors above max_error do not stretch the axis: they are drawn in a separate strip above a break.
 constexpr double max_error = 2, strip = 40;
 
-// A logarithmic axis onto pixels.
+// A logarithmic axis, from values to pixels.
 struct Axis {
     double low = 1, high = 10; // values at both ends
     double from = 0, to = 1;   // pixels
@@ -35,7 +35,7 @@ std::string n(double value) { return formatted("%.1f", value); }
 
 bool drawn(const ChartPoint& point) { return std::isfinite(point.errors.error) && point.seconds_1 > 0; }
 
-// What is drawn, and by what it is placed.
+// The chart, the kinds of time and error on its axes, and the axes.
 struct Frame {
     const Chart& chart;
     FrameTime time;
@@ -52,7 +52,7 @@ struct Frame {
         if (what == ErrorOf::fog) return point.fog_uncertainty;
         return fitted ? point.fitted.uncertainty : point.errors.uncertainty;
     }
-    // What is below the reference's noise lies on it.
+    // An error below the reference's noise is drawn at that noise.
     double value(const ChartPoint& point, bool fitted) const {
         return std::max({error(point, fitted), uncertainty(point, fitted), 1e-6});
     }
@@ -87,7 +87,7 @@ Frame frame_of(const Chart& chart, FrameTime time, ErrorOf what) {
     return frame;
 }
 
-// 1, 2 and 5 of each decade within the axis; those of 1 are strong.
+// 1, 2 and 5 of each decade within the axis; powers of ten are strong.
 struct Tick {
     double value;
     bool strong, named;
@@ -139,7 +139,7 @@ std::string grid(const Frame& frame) {
                       " text-anchor='middle' transform='rotate(-90 17 " + n(middle) + ")'");
 }
 
-// The break of the error axis and what is above it.
+// The break of the error axis, and its label.
 std::string strip_of(const Frame& frame) {
     if (!frame.broken) return {};
     const double y = top + strip - 4;
@@ -168,7 +168,7 @@ std::string shape(int kind, Place at, double size) {
     return "<polygon points='" + points + "'/>";
 }
 
-// Where points lie, and how uncertain that is.
+// Error bars: the uncertainty of a point's error, and the range of its times.
 std::string whiskers(const Frame& frame, const ChartPoint& point, bool fitted) {
     const auto [x, y] = frame.place(point, fitted);
     const double error = frame.error(point, fitted), uncertainty = frame.uncertainty(point, fitted);
@@ -184,7 +184,7 @@ std::string whiskers(const Frame& frame, const ChartPoint& point, bool fitted) {
     return svg;
 }
 
-// Black is the colour of letters, which are light on dark screens.
+// Black stands for the text color, which is light on dark screens.
 std::string ink(const std::string& mode) {
     const std::string color = style_of(mode).color;
     return color == "#000000" ? "currentColor" : color;
@@ -205,12 +205,12 @@ std::string mark(const Frame& frame, const ChartPoint& point, Place at, bool fit
            colored(point.mode, fitted, at) + "</g>\n";
 }
 
-// What lies over what.
+// The drawing's layers, lines below marks, and what its legend shows.
 struct Drawing {
     std::string lines, marks;
     std::vector<std::string> modes;     // that are drawn
-    std::vector<std::string> over = {}; // errors in the strip, a mode each
-    bool fitted = false;                // a look is drawn a second time
+    std::vector<std::string> over = {}; // errors in the strip, one text per mode
+    bool fitted = false;                // an artistic mode is drawn again with its fitted gain
 };
 
 // The range of a mode's errors in the strip.
@@ -224,7 +224,7 @@ void note_strip(const Frame& frame, const std::string& mode, Drawing& drawing) {
     drawing.over.push_back(mode + " " + from + (from == to ? "" : " to " + to));
 }
 
-// A mode's marks with a line through them; looks a second time with the gain that fits them.
+// Adds a mode's marks and a line through them; `fitted`: with the fitted gain of an artistic mode.
 void add_series(const Frame& frame, const std::string& mode, bool fitted, Drawing& drawing) {
     std::string path;
     for (const ChartPoint& point : frame.chart.points) {
@@ -241,7 +241,7 @@ void add_series(const Frame& frame, const std::string& mode, bool fitted, Drawin
     if (!fitted) drawing.modes.push_back(mode);
 }
 
-// Steps along the points that nothing beats.
+// The Pareto front: steps along the unbeaten points.
 std::string front(const Frame& frame) {
     std::vector<Place> best;
     for (const ChartPoint& point : frame.chart.points)
@@ -257,7 +257,7 @@ std::string front(const Frame& frame) {
     return "<path d='" + path + "' class='front'/>\n";
 }
 
-// Names of the marks in rows below the plot, and what the strip holds. Returns where they end as well.
+// The names of the marks in rows below the plot, and the errors in the strip. `end` returns their lower edge.
 std::string legend(const Drawing& drawing, double& end) {
     std::string svg;
     int entries = 0;

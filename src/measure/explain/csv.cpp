@@ -5,7 +5,7 @@
 
 namespace tyndall {
 namespace {
-// A field in quotes where commas or quotes ask for it (RFC 4180).
+// A field, in quotes if it holds commas, quotes or line breaks (RFC 4180).
 std::string field(const std::string& text) {
     if (text.find_first_of(",\"\r\n") == text.npos) return text;
     std::string result = "\"";

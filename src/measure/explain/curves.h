@@ -1,22 +1,23 @@
-// What drawings of a ray show, whatever they are drawn with.
+// Data for drawings of a ray, independent of the drawing library.
 #pragma once
 #include "measure/explain/explain.h"
 #include "volume/bricks/brick_walk.h"
 
 namespace tyndall::ray_drawing {
-// The axis of distances: it goes on until hardly anything is seen, and begins with the fog where that is far away.
+// The range of the distance axis: it ends where hardly any light gets to the eye, and starts near the fog if that is
+// far away.
 Interval<double> axis_of(const RayStory& story);
 
-// What a light does at each step.
+// How a light shines on each step.
 std::vector<Lighting> states_of(const RayStory& story, const LightOnRay& light);
 
-// The brightest lights, in the story's order.
+// The `most` brightest lights, in the story's order.
 std::vector<size_t> drawn_lights(const RayStory& story, size_t most);
 
-// Luminance per metre that arrives at the eye, of a source at a step.
+// Luminance per meter that arrives at the eye from a source at a step.
 double arriving(const RayStep& step, vec3 source);
 
-// Where the axis of such values ends: values that hardly any of the ray exceeds decide, as next to a lamp they have no
-// end. `most` is the largest.
+// The end of an axis for such values: set by what hardly any of the ray exceeds, since next to a lamp values are
+// unbounded. `most` returns the largest.
 double light_scale(const RayStory& story, double& most);
 }

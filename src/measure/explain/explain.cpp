@@ -57,7 +57,7 @@ void start_story(const RayScene& scene, ivec2 pixel, RayStory& story) {
     story.reference.samples = std::ranges::any_of(scene.snapshot.lights, is_soft) ? scene.truth.terms.light_points : 1;
 }
 
-// Fog light of one part by the reference, light by light; `through` arrives of it. What the fog lets through.
+// Adds the reference's fog light on one part, light by light, times `through`. Returns the fog's transmittance.
 vec3 add_reference(const Prepared& prepared, const RayPart& part, vec3 through, RayStory& story) {
     const size_t lights = story.lights.size();
     std::vector<vec3> of_lights(part_count(lights), vec3(0));
@@ -81,7 +81,7 @@ std::string material_of(const RayScene& scene, int instance) {
     return material >= 0 ? whole.materials[static_cast<size_t>(material)].name : std::string();
 }
 
-// The surface the ray has come to.
+// Adds the surface that the ray has reached.
 void add_surface(const RayScene& scene, const Prepared& prepared, int layer, const PathPacket& s,
                  const SurfacePoint& point, double distance, RayStory& story) {
     const Path& path = s.path[0];
@@ -109,7 +109,7 @@ void add_surface(const RayScene& scene, const Prepared& prepared, int layer, con
     story.surfaces.push_back(std::move(surface));
 }
 
-// The ray from surface to surface, as trace_samples() goes.
+// Follows the ray from surface to surface, as trace_samples() does.
 void follow(const RayScene& scene, RayStory& story) {
     const Prepared prepared = prepare_frame(main_mode(), scene.view, scene.snapshot, scene.truth, nullptr);
     PathPacket s;

@@ -1,4 +1,4 @@
-// The fog of one part of the ray in steps, and what each light does there.
+// Divides the fog on one part of the ray into steps, and finds what each light contributes there.
 #include "measure/explain/parts.h"
 #include "volume/medium.h"
 
@@ -11,12 +11,12 @@
 
 namespace tyndall {
 namespace {
-constexpr int near_steps = 64; // of equal angle, as a local light sees what it reaches
+constexpr int near_steps = 64; // of equal angle as seen from a local light, over what it reaches
 
 // The density of one medium integrated from the start of the ray, in closed form.
 struct Column {
     const std::vector<DensityPiece>& pieces;
-    std::vector<double> before; // each piece
+    std::vector<double> before; // integral before each piece
 
     explicit Column(const std::vector<DensityPiece>& all) : pieces(all) {
         double sum = 0;
@@ -42,7 +42,7 @@ struct FogOnPart {
     }
 };
 
-// Ends of steps: evenly spread, by optical depth too, around lamps, and where a light's shadow begins or ends.
+// Ends of steps: equally spaced in distance, in optical depth and in angle around lamps; and at shadow boundaries.
 std::vector<double> step_ends(const FogOnPart& on, std::span<const LightOnPart> lights, int count) {
     const Interval<double> range = on.range();
     std::vector<double> ends{range.low, range.high};
@@ -106,7 +106,7 @@ RayStep step_at(const RayScene& scene, const RayPart& part, const FogOnPart& on,
     return step;
 }
 
-// Mean share of the light over a step.
+// Mean visible share of the light over a step.
 float share_over(const std::vector<LightStretch>& shares, double low, double high) {
     auto stretch = std::ranges::upper_bound(shares, low, {}, &LightStretch::high);
     double sum = 0;
@@ -115,7 +115,7 @@ float share_over(const std::vector<LightStretch>& shares, double low, double hig
     return static_cast<float>(sum / (high - low));
 }
 
-// What the fog between a light and the steps lets through.
+// Transmittance of the fog between a light and each step.
 std::vector<LightAtStep> dimmed(const LightDepth& depth, const Ray& ray, std::span<const Place> places) {
     std::vector<LightAtStep> at(places.size());
     alignas(64) float x[16] = {}, y[16] = {}, z[16] = {}, depths[16];
@@ -134,7 +134,7 @@ std::vector<LightAtStep> dimmed(const LightDepth& depth, const Ray& ray, std::sp
     return at;
 }
 
-// Light scattered towards the eye in the middle of a step, when all of the light is seen.
+// Light scattered towards the eye in the middle of a step, if all of the light is visible.
 vec3 scattered(const RayScene& scene, const LightAlong& along, const RayPart& part, const Place& place) {
     const LightSamplesAt arriving = arriving_at(along, place.middle());
     const double cosine = glm::dot(arriving.to_light, dvec3(part.ray.direction));
@@ -159,7 +159,7 @@ std::vector<Place> places_of(const FogOnPart& on, std::span<const LightOnPart> l
     return places;
 }
 
-// Moves a stretch of a part to where it lies on the whole ray.
+// Moves a stretch by the distance at which its part starts on the ray.
 LightStretch moved(LightStretch stretch, double by) {
     stretch.low += by, stretch.high += by;
     return stretch;

@@ -1,4 +1,4 @@
-// Where one part of the ray sees a light, and what stands in its way.
+// Where one part of the ray sees a light, and what blocks it.
 #include "measure/explain/parts.h"
 #include "volume/medium.h"
 
@@ -12,9 +12,9 @@ namespace {
 constexpr int blocker_places = 5;    // along a stretch
 constexpr size_t blocker_points = 8; // of a soft light
 constexpr int max_sheets = 8;        // BLEND surfaces before the blocker
-constexpr double shortest = 1e-7;    // stretch, as a share of the ray: less is rounding
+constexpr double shortest = 1e-7;    // stretch, relative to the ray: less is rounding
 
-// Where one more or one less point of the light is seen, or where its reach begins or ends.
+// Where one more or one less point of the light is visible, or where its reach begins or ends.
 struct Change {
     double t = 0;
     int seen = 0, reached = 0;
@@ -37,7 +37,7 @@ std::vector<LightStretch> shares_of(std::vector<Change> changes, int points) {
     return shares;
 }
 
-// Neighbours of a kind become one; what is shorter than rounding goes to the one before it.
+// Merges neighbors of the same state; a stretch shorter than `least` is merged into the one before it.
 std::vector<LightStretch> joined(const std::vector<LightStretch>& shares, double least) {
     std::vector<LightStretch> result;
     for (const LightStretch& next : shares) {
@@ -54,7 +54,7 @@ std::vector<LightStretch> joined(const std::vector<LightStretch>& shares, double
     return result;
 }
 
-// From a point of the ray to a point of the light; to the ball's surface where the light has one.
+// From a point of the ray to a point of the light; ends at the surface of a spherical light.
 Ray ray_to(const LightPoint& to, dvec3 from) {
     const dvec3 towards = to.far ? to.at : to.at - from;
     const double distance = glm::length(towards);
@@ -68,7 +68,7 @@ Ray ray_to(const LightPoint& to, dvec3 from) {
     return {vec3(from), vec3(direction), static_cast<float>(std::max(end, 0.0) * 0.9999)};
 }
 
-// The first surface that lets nothing through, or else the first one; -1 = none.
+// The instance of the first opaque surface, or else of the first surface; -1 = none.
 int blocking_instance(const Occluders& occluders, Ray ray) {
     int first = -1;
     for (int sheet = 0; sheet < max_sheets; ++sheet) {
@@ -114,7 +114,7 @@ void add_alpha_shadows(const RayScene& scene, const RayPart& part, size_t first_
                        LightOnPart& on, std::vector<LightAtStep>& at) {
     std::vector<LightStretch> seen;
     size_t stretch = 0;
-    double done = 0; // of the part, in `seen`
+    double done = 0; // distance up to which `seen` covers the part
     const auto copy_to = [&](double t) {
         while (stretch < on.lit.size() && on.lit[stretch].low < t) {
             LightStretch piece = on.lit[stretch];
@@ -152,7 +152,7 @@ void add_alpha_shadows(const RayScene& scene, const RayPart& part, size_t first_
 void name_blockers(const RayScene& scene, const RayPart& part, LightOnPart& on) {
     for (LightStretch& stretch : on.lit) {
         if (stretch.state == Lighting::full || stretch.state == Lighting::out_of_reach) continue;
-        std::vector<std::pair<int, std::string>> counts; // how often each is met, below 0
+        std::vector<std::pair<int, std::string>> counts; // minus the number of hits, and the name
         for (int i = 0; i < blocker_places; ++i) {
             const double t = stretch.low + (stretch.high - stretch.low) * (i + 0.5) / blocker_places;
             for (size_t p = 0; p < std::min(on.points.size(), blocker_points); ++p) {

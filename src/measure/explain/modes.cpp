@@ -1,4 +1,4 @@
-// What modes say of one pixel.
+// Evaluates modes at one pixel.
 #include "measure/explain/parts.h"
 
 #include "base/error.h"
@@ -13,7 +13,7 @@ namespace tyndall {
 namespace {
 constexpr int tile_side = 4;
 constexpr int noisy_batches = 32;
-constexpr int largest_picture = 1 << 20; // pixels that a mode of whole pictures is asked for
+constexpr int largest_picture = 1 << 20; // pixels rendered by a mode that works on whole images
 
 FrameTracer tracer_of(const Mode& mode, const RayScene& scene, const View& view, const Prepared& prepared) {
     return frame_tracer(mode, view, scene.snapshot, scene.settings, prepared);
@@ -25,7 +25,7 @@ void take(const PixelSample& sample, Answer& answer) {
     answer.finite = sample.finite();
 }
 
-// The pixel in the midst of its tile: a mode may let neighbours share steps.
+// Traces the pixel together with its tile: a mode may let neighbors share steps.
 void ask_tile(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answer) {
     const Prepared prepared = prepare_frame(mode, scene.view, scene.snapshot, scene.settings, nullptr);
     const ivec2 corner = pixel / tile_side * tile_side, end = glm::min(corner + tile_side, scene.view.size);
@@ -41,7 +41,7 @@ void ask_tile(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answ
     take(samples[own], answer);
 }
 
-// The mean of many samples, and how far it may be off: from the spread of independent batches.
+// The mean of many samples, and its standard error from independent batches.
 void ask_often(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answer) {
     View view = scene.view;
     view.pixel_samples = answer.samples = scene.options.noisy_samples, view.batches = noisy_batches;
@@ -71,7 +71,7 @@ void ask_often(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& ans
     if (scene.settings.path.orders > 1) answer.remark += "; light may scatter more than once, the reference's does not";
 }
 
-// The whole picture, smaller where it is large.
+// Renders the whole image, reduced in size if it is large.
 void ask_picture(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answer) {
     View view = scene.view;
     int shrink = 1;
@@ -89,7 +89,7 @@ void ask_picture(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& a
     answer.finite = is_finite(answer.inscatter) && is_finite(answer.color);
 }
 
-// Whether a light gets to the ray, or a medium lies on it.
+// Whether the limitation's light reaches the ray, or its medium lies on it.
 bool concerns(const Limitation& limitation, const RayStory& story) {
     const auto reaches = [](const LightStretch& stretch) { return stretch.state != Lighting::out_of_reach; };
     if (limitation.subject == Subject::light)

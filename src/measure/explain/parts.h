@@ -1,4 +1,4 @@
-// What explain_ray() is made of. Internal to it.
+// The parts of explain_ray(). Internal to it.
 #pragma once
 #include "integrate/lights/light_along.h"
 #include "measure/explain/explain.h"
@@ -7,17 +7,17 @@
 #include "trace/view.h"
 
 namespace tyndall {
-// What all of the ray shares. Not to be moved: `depths` point into `fog`.
+// What all parts of the ray share. Must not be moved: `depths` point into `fog`.
 struct RayScene {
-    View view; // one sample at the centre of each pixel
+    View view; // one sample at the center of each pixel
     const Snapshot& snapshot;
     const Settings &settings, truth;
-    Snapshot fog;                   // as march.* and style.* see it
+    Snapshot fog;                   // the snapshot with terms.* and style.* applied
     std::vector<LightDepth> depths; // of every light, in that fog
     const ExplainOptions& options;
 
     const Occluders* casters(size_t light) const { return shadow_casters(snapshot.lights[light], snapshot).get(); }
-    // Points of a light that are asked for its shadows.
+    // Points on a light that are sampled for its shadows.
     uint32_t points_of(const Light& light) const {
         return is_soft(light) ? static_cast<uint32_t>(truth.terms.light_points) : 1;
     }
@@ -27,7 +27,7 @@ struct RayScene {
 struct RayPart {
     const Ray& ray;
     const RayBatch& batch; // of this ray alone
-    double start = 0;      // metres from the eye
+    double start = 0;      // meters from the eye
     double depth = 0;      // optical depth before it
     double through = 1;    // share of the light at its start that arrives at the eye
 };
@@ -36,22 +36,22 @@ struct RayPart {
 struct LightOnPart {
     size_t light = 0;                 // of the snapshot
     LightAlong along;                 // of its first point
-    std::vector<LightPoint> points;   // that cast its shadows
-    std::vector<LightStretch> shares; // exact: of how many of its points the light comes
-    std::vector<LightStretch> lit;    // the same, with all that is partly lit put together
+    std::vector<LightPoint> points;   // sampled for its shadows
+    std::vector<LightStretch> shares; // each with an exact number of visible points
+    std::vector<LightStretch> lit;    // the same, with partly lit neighbors merged
 };
 
 LightOnPart light_on(const RayScene& scene, const RayPart& part, size_t light);
 
-// Shares of the light that surfaces with alpha let through to the steps, first to last of the story; and the
-// stretches as the steps see them.
+// Multiplies the shares of the part's steps, which start at `first_step` in the story, by the light that surfaces with
+// alpha transmit, and divides on.lit accordingly.
 void add_alpha_shadows(const RayScene& scene, const RayPart& part, size_t first_step, const RayStory& story,
                        LightOnPart& on, std::vector<LightAtStep>& at);
 
-// Names what stands between the light and the stretches that lack some of it.
+// Names what blocks the light on stretches that are shadowed or partly lit.
 void name_blockers(const RayScene& scene, const RayPart& part, LightOnPart& on);
 
-// Appends the part's steps, what each light does at them, and where it is lit.
+// Appends the part's steps, with what each light contributes and where it shines.
 void append_fog(const RayScene& scene, const RayPart& part, RayStory& story);
 
 std::string name_of_instance(const Snapshot& snapshot, int instance);

@@ -10,15 +10,15 @@ namespace tyndall {
 using namespace ray_drawing;
 
 namespace {
-constexpr size_t max_lights = 7; // that are drawn, the brightest first
+constexpr size_t max_lights = 7; // drawn, brightest first
 constexpr const char* fog_color = "#8c8c8c";
 constexpr const char* dark_color = "#4d4d4d";
 
-// Told apart by colour-blind eyes too (Okabe and Ito 2008).
+// Distinguishable with color vision deficiency (Okabe and Ito 2008).
 constexpr const char* light_colors[max_lights] = {"#E69F00", "#0072B2", "#009E73", "#D55E00",
                                                   "#CC79A7", "#56B4E9", "#7a5c00"};
 
-// One panel's way from values to the drawing.
+// Maps the values of one panel to the drawing.
 struct Panel {
     double top, bottom;
     Interval<double> range; // of distances, from left to right
@@ -45,13 +45,13 @@ void draw_axes(const Panel& panel, const std::string& title, bool percents, bool
     svg.text(left, panel.top - 7, title, Anchor::start, "font-weight='bold'");
 }
 
-// A curve with one value for each step, through their middles; broken where steps are left out, and with a jump where
-// `joins` says that a step has nothing to do with the next.
+// A curve through the middles of steps, one value per step; broken where drawn(i) is false, and with a jump to the next
+// step where joins(i) is false.
 template<class Value, class Drawn, class Joins>
 std::string curve(const RayStory& story, const Panel& panel, const Value& value, const Drawn& drawn,
                   const Joins& joins) {
     std::string path;
-    bool going = false; // from the step before
+    bool going = false; // on from the step before
     for (size_t i = 0; i < story.steps.size() && story.steps[i].low < panel.range.high; ++i) {
         const RayStep& step = story.steps[i];
         if (!drawn(i)) {
@@ -125,7 +125,7 @@ void draw_light(const RayStory& story, std::span<const size_t> lights, double to
     }
 }
 
-// A light's row: its colour where it shines, pale in half shadow, dark in shadows, a thin line out of its reach.
+// A light's row: its color where it shines, paler in penumbra, dark in shadow, a thin line beyond its reach.
 void draw_stretch(const Panel& panel, const LightStretch& stretch, double y, const char* color, Svg& svg) {
     if (stretch.low >= panel.range.high || stretch.high <= panel.range.low) return;
     const double from = panel.x(stretch.low), to = panel.x(stretch.high);
@@ -167,7 +167,7 @@ double draw_lit(const RayStory& story, std::span<const size_t> lights, double to
     return panel.bottom + 40;
 }
 
-// Lines through all panels where the ray meets surfaces.
+// Lines across all panels where the ray meets surfaces.
 void draw_surfaces(const RayStory& story, double top, double bottom, Interval<double> range, Svg& svg) {
     const Panel panel{top, bottom, range, 1};
     for (const SurfaceOnRay& surface : story.surfaces) {

@@ -1,4 +1,4 @@
-// What the drawing of a ray is made of. Internal to it.
+// The parts of a ray's drawing. Internal to it.
 #pragma once
 #include "measure/explain/report.h"
 #include "measure/report/svg.h"
@@ -9,6 +9,6 @@ inline constexpr double width = 1000, left = 120, right = 980; // of the drawing
 inline constexpr const char* ink = "#222";
 }
 
-// Bars for the modes from `top` on; returns where they end.
+// Draws bars for the modes from `top` down; returns their lower end.
 double draw_modes(const RayStory& story, double top, Svg& svg);
 }

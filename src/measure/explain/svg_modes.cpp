@@ -14,7 +14,7 @@ void draw_answer(const Answer& answer, const Answer* reference, double y, double
     const double value = luminance(answer.inscatter), share = value / scale;
     svg.text(left - 8, y + 12, answer.mode, Anchor::end);
     const double length = (bars - left) * std::clamp(share, 0.0, 1.0);
-    const double sure = std::clamp(double(answer.validity), 0.0, 1.0); // pale where the mode doubts itself
+    const double sure = std::clamp(double(answer.validity), 0.0, 1.0); // paler at low validity
     svg.bar(left, y, length, 16, reference ? "#0072B2" : ink, reference ? 0.3 + 0.7 * sure : 1, answer.remark);
     if (share > 1) svg.text(bars - 4, y + 12, "▸", Anchor::end, "fill='#fff'");
     svg.text(bars + 80, y + 12, digits(value), Anchor::end);

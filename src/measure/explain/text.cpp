@@ -1,4 +1,4 @@
-// The report for people.
+// The text report.
 #include "measure/explain/text.h"
 
 #include "base/error.h"
@@ -42,7 +42,7 @@ std::string ray_text(const RayStory& story) {
     return text;
 }
 
-// Metres of the ray on which a light does this.
+// Meters of the ray on which a light has this state.
 double length_of(const LightOnRay& light, Lighting state) {
     double sum = 0;
     for (const LightStretch& stretch : light.stretches)
@@ -158,7 +158,7 @@ std::string explain_text(const RayStory& story, const StoryTitle& title) {
     for (const std::string& part : {ray_text(story), lights_text(story), stretches_text(story), steps_text(story),
                                     modes_text(story), limitations_text(story)})
         if (!part.empty()) text += "\n" + part;
-    // Empty cells leave no blanks at the ends of lines.
+    // Removes the blanks that empty cells leave at the ends of lines.
     std::string result;
     for (const char c : text) {
         if (c == '\n')

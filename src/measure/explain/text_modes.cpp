@@ -1,4 +1,4 @@
-// The modes' answers for people.
+// The modes' answers as text.
 #include "measure/explain/text.h"
 
 #include "base/error.h"
@@ -15,7 +15,7 @@ std::string answer_text(const Answer& answer, const Answer* reference) {
                      answer.steps);
 }
 
-// What one or more modes say alike of one or more lights or media.
+// A limitation of one or more lights or media, and the modes that share it.
 struct Said {
     std::vector<std::string> modes;
     LimitationGroup group;

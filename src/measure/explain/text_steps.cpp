@@ -1,4 +1,4 @@
-// The table of steps for people.
+// The table of steps as text.
 #include "measure/explain/text.h"
 
 #include "base/error.h"
@@ -11,11 +11,11 @@ namespace {
 constexpr int max_rows = 20;
 constexpr size_t max_light_columns = 4;
 
-// Steps put together over one stretch of the ray.
+// Steps merged over one stretch of the ray.
 struct Row {
     double low = 0, high = 0, depth = 0, reach = 0;
-    dvec3 source{0}, added{0};           // per metre, times metres; at the eye
-    std::vector<double> share, to_light; // of each light, times metres
+    dvec3 source{0}, added{0};           // radiance per meter, times meters; light at the eye
+    std::vector<double> share, to_light; // of each light, times meters
 };
 
 Row row_of(const RayStory& story, double low, double high) {
@@ -55,7 +55,7 @@ std::vector<double> row_ends(const RayStory& story) {
     return ends;
 }
 
-// The lights that give most of the fog's light.
+// The lights that contribute most of the fog light.
 std::vector<size_t> main_lights(const RayStory& story) {
     std::vector<size_t> all;
     for (size_t l = 0; l < story.lights.size(); ++l)

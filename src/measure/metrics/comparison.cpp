@@ -10,7 +10,7 @@ const Errors* find_layer(const Comparison& comparison, const std::string& name) 
     return nullptr;
 }
 
-// Halves and variance estimate the noise of the picture; they are no layers of their own.
+// Halves and variance estimate the image's noise; they are not compared as layers.
 bool is_statistic(const std::string& name) { return name == "half_a" || name == "half_b" || name == "Variance"; }
 
 double root_mean(const Image<vec3>& squares) {
@@ -27,7 +27,7 @@ void add_halves(const Picture& test, const Picture& reference, Comparison& resul
     if (a1 && a2) result.bias_squared = product_of_errors(*a1, *a2, *r1, *r2);
 }
 
-// Mean over frames that are independent of each other.
+// Mean over frames, taken as independent.
 std::optional<Estimate> averaged(std::span<const Comparison> frames, std::optional<Estimate> Comparison::*member) {
     double sum = 0, variance = 0;
     for (const Comparison& frame : frames) {

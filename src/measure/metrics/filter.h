@@ -6,8 +6,8 @@
 #include <cassert>
 
 namespace tyndall {
-// result(x, y) = Σ horizontal[i] · vertical[j] · image(x + i − radius, y + j − radius), one after the other. The
-// kernels have 2·radius + 1 weights; weights of vec3 filter each channel by its own.
+// result(x, y) = Σ horizontal[i] · vertical[j] · image(x + i − radius, y + j − radius), in two passes. The kernels have
+// 2·radius + 1 weights; weights of vec3 filter each channel separately.
 template<class T>
 Image<T> filtered(const Image<T>& image, const std::vector<T>& horizontal, const std::vector<T>& vertical) {
     assert(horizontal.size() % 2 == 1 && vertical.size() % 2 == 1);

@@ -7,14 +7,14 @@
 
 namespace tyndall {
 namespace {
-// The constants of the paper: exponents and the bend of the colour difference, width of a feature in degrees, and the
+// The constants of the papers: exponents and the bend of the color difference, width of a feature in degrees, and the
 // luminance at which the brightest pixel is shown.
 constexpr float color_exponent = 0.7f, bend_at = 0.4f, bend_to = 0.95f, feature_exponent = 0.5f;
 constexpr double feature_width = 0.082, nearly_white = 0.85, darkest_median = 1e-3;
 constexpr double pi_d = 3.14159265358979323846;
 
 // Contrast sensitivity of the eye as a sum of two Gaussians a·√(π/b)·exp(−π² x²/b), x in degrees, separately for
-// lightness, red-green and blue-yellow: one kernel per Gaussian, both together normalised.
+// lightness, red-green and blue-yellow: one kernel per Gaussian, both normalized together.
 struct Sensitivity {
     vec3 a, b;
 };
@@ -46,7 +46,7 @@ std::vector<std::vector<vec3>> sensitivity_kernels(double pixels_per_degree) {
     return kernels;
 }
 
-// What is left of the colours at viewing distance, in the space where differences are measured.
+// The colors perceived at viewing distance, in the space where differences are measured.
 Image<vec3> perceived(const Image<vec3>& ycxcz, const std::vector<std::vector<vec3>>& kernels) {
     Image<vec3> result = filtered(ycxcz, kernels[0], kernels[0]);
     const Image<vec3> second = filtered(ycxcz, kernels[1], kernels[1]);
@@ -59,7 +59,7 @@ Image<vec3> perceived(const Image<vec3>& ycxcz, const std::vector<std::vector<ve
     return result;
 }
 
-// HyAB distance, compressed: up to 0.4 of the largest possible one (green to blue) it takes 0.95 of the range.
+// HyAB distance, compressed: up to 0.4 of the largest possible distance (green to blue) maps to 0.95 of the range.
 float color_difference(vec3 a, vec3 b) {
     static const float largest =
         std::pow(hyab(hunt_lab_of_rgb(vec3(0, 1, 0)), hunt_lab_of_rgb(vec3(0, 0, 1))), color_exponent);
@@ -68,8 +68,8 @@ float color_difference(vec3 a, vec3 b) {
     return bend_to + (difference - bend) / (largest - bend) * (1 - bend_to);
 }
 
-// A Gaussian, its first derivative (edges) and its second (points), in x: the positive weights of each add up to 1,
-// and so do the negative ones.
+// A Gaussian, its first derivative (edges) and its second (points), in x: the positive weights of each sum to 1, the
+// negative ones to −1.
 struct FeatureKernels {
     std::vector<float> smooth, edge, point;
 };
@@ -113,7 +113,7 @@ Image<vec3> ycxcz_image(const Image<vec3>& rgb) {
     return result;
 }
 
-// A display's linear colours at an exposure.
+// Linear display colors at an exposure.
 Image<vec3> tone_mapped(const Image<vec3>& image, double exposure) {
     const double gain = std::exp2(exposure);
     Image<vec3> result(image.size);
@@ -134,7 +134,7 @@ Image<float> flip_ldr(const Image<vec3>& test, const Image<vec3>& reference, dou
     const Image<vec3> seen_t = perceived(t, sensitivity), seen_r = perceived(r, sensitivity);
     const Image<vec2> features_t = features(t, kernels), features_r = features(r, kernels);
 
-    // Differing features make a difference of colour count more.
+    // Feature differences amplify color differences.
     Image<float> map(test.size);
     parallel_ranges(static_cast<int64_t>(map.pixels.size()), 4096, [&](int64_t begin, int64_t end) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {

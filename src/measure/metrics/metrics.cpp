@@ -38,7 +38,7 @@ void add_up(const Image<vec3>& test, const Image<vec3>& reference, Errors& e, st
     e.rmse = std::sqrt(squares / values);
 }
 
-// Terms of relMSE; multiplying by mean² above and below the line saves the scaling.
+// Terms of relMSE; multiplying numerator and denominator by mean² avoids scaling the images.
 void add_rel_mse(const Image<vec3>& test, const Image<vec3>& reference, Errors& e) {
     if (e.rmse == 0 || !(e.mean_reference > 0)) {
         e.rel_mse = e.rel_mse_trimmed = relative(e.rmse, e.mean_reference);

@@ -1,6 +1,6 @@
-// How far a linear RGB picture is from its reference. Sums are in double and in pixel order.
+// Errors of a linear RGB image against its reference. Sums are in double and in pixel order.
 //
-// Pixels with a NaN or infinite channel in either picture are counted and left out of everything else. With no pixel
+// Pixels with a NaN or infinite channel in either image are counted and left out of everything else. With no pixel
 // left, every value is NaN.
 #pragma once
 #include "base/image.h"
@@ -9,7 +9,7 @@
 #include <span>
 
 namespace tyndall {
-// Over all channels of all pixels, I the picture and R the reference.
+// Over all channels of all pixels, I the image and R the reference.
 struct Errors {
     uint64_t pixels = 0;                                    // compared
     uint64_t non_finite_test = 0, non_finite_reference = 0; // pixels
@@ -19,15 +19,15 @@ struct Errors {
     double p95 = 0, p99_9 = 0, most = 0; // percentiles (nearest rank) and maximum of |I − R|
 
     // relMSE: mean of (I − R)² / (R² + 0.01), both scaled so that mean(R) = 1; also without the largest 0.1 % of the
-    // terms, where single outliers live.
+    // terms, which excludes single outliers.
     double rel_mse = 0, rel_mse_trimmed = 0;
 };
 
-// Both pictures must have the same size.
+// Both images must have the same size.
 Errors measure_errors(const Image<vec3>& test, const Image<vec3>& reference);
 
-// An error as a share of the reference's mean. 0 stays 0 whatever the mean; anything else against a mean that is not
-// positive is infinite.
+// An error relative to the reference's mean. 0 stays 0 for any mean; another error is infinite if the mean is not
+// positive.
 double relative(double error, double mean_reference);
 
 // Errors of a whole sequence: bias, rmse, mae, means and relMSE over all its pixels; percentiles and maximum of the
@@ -37,8 +37,8 @@ Errors pooled(std::span<const Errors> frames);
 // Whether a pixel takes part in the comparison.
 inline bool comparable(vec3 test, vec3 reference) { return is_finite(test) && is_finite(reference); }
 
-// Difference between neighbouring frames that the reference does not have: the root mean square over time and pixels
-// of (I_t − I_t−1) − (R_t − R_t−1), divided by mean(R). A reference that stands still counts as R_t − R_t−1 = 0.
+// Changes between successive frames that the reference lacks: the root mean square over time and pixels of
+// (I_t − I_t−1) − (R_t − R_t−1), divided by mean(R). For a single reference image, R_t − R_t−1 = 0.
 class Flicker {
 public:
     void add_frame(const Image<vec3>& test, const Image<vec3>& reference);

@@ -4,7 +4,7 @@
 #include <cmath>
 
 namespace tyndall {
-// The ACES-like curve of Narkowicz 2015 with the input scaled by 0.6, as HDR-FLIP takes it (Andersson et al. 2021):
+// The ACES-like curve of Narkowicz 2015 with the input scaled by 0.6, as in HDR-FLIP (Andersson et al. 2021):
 // (a x² + b x) / (c x² + d x + e), within 0..1.
 namespace aces_curve {
 inline constexpr double a = 0.6 * 0.6 * 2.51, b = 0.6 * 0.03, c = 0.6 * 0.6 * 2.43, d = 0.6 * 0.59, e = 0.14;
@@ -12,7 +12,7 @@ inline constexpr double a = 0.6 * 0.6 * 2.51, b = 0.6 * 0.03, c = 0.6 * 0.6 * 2.
 
 inline double aces(double x) {
     if (!(x > 0)) return 0;
-    if (x > 1e6) return 1; // long since white; squares of huge values would overflow
+    if (x > 1e6) return 1; // white; squares of huge values would overflow
     using namespace aces_curve;
     return std::clamp((a * x + b) * x / ((c * x + d) * x + e), 0.0, 1.0);
 }

@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-// Noise of the picture's pixels at their centres: what frames before could smooth, since it is not the edges'.
+// Noise at pixel centers, which excludes that of edges: what a history of earlier frames could smooth.
 Term history_term(const View& view, const Snapshot& snapshot, const Contender& chosen, double error,
                   const TermControl& control) {
     Term term{"earlier frames", "", "left out"};
@@ -29,7 +29,7 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     return term;
 }
 
-// The worst limitations that may be why a mode is off. What the reference leaves out as well is not.
+// The worst limitations that may explain a mode's error; single scattering does not, since the reference has it too.
 std::optional<LimitationGroup> worst_of(const Limitations& limitations) {
     std::optional<LimitationGroup> worst;
     for (const LimitationGroup& group : groups_of(limitations))
@@ -57,7 +57,7 @@ std::string loss(const Contender& best, const Contender& winner, const Goal& goa
     return text;
 }
 
-// The best that each mode has shown.
+// Each mode with its best contender, from best to worst.
 std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& contest, const View& view,
                                    const Snapshot& snapshot, const Goal& goal, bool many_orders) {
     std::vector<Standing> standings;
@@ -92,7 +92,7 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
 }
 
 namespace {
-// Modes that take light of several orders from a grid against each other and, where that is too far off, path tracing.
+// A contest of the modes that take multiple scattering from a grid and, if that is too inaccurate, path tracing.
 Contest contest_of_orders(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, Plan& plan,
                           const Goal& goal, double share, const FrameOptions& options) {
     const double start = goal.clock();
@@ -113,7 +113,7 @@ Contest contest_of_orders(std::span<const Mode> modes, const View& view, const S
         contest = hold_contest(modes, view, snapshot, plan.settings, beside, share, options);
     if (goal.error == 0) {
         contest.contenders.push_back(path());
-        // What is not known of the grid speaks against it.
+        // The uncertainty of the grid's error counts against it.
         const double grid = std::max(plan.orders->pixels.error, 0.5 * plan.orders->pixels.bound);
         if (contest.contenders.back().error < std::hypot(contest.best().error, grid))
             contest.winner = contest.contenders.size() - 1;
@@ -134,11 +134,12 @@ Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& sn
         };
     };
     const double start = goal.clock();
-    const double wanted = goal.error > 0 ? goal.error : 0.02; // what terms may cost where only time is asked for
+    const double wanted = goal.error > 0 ? goal.error : 0.02; // target error for terms when only time is limited
     if (share == infinity) plan.terms = terms_of(view, snapshot, settings, wanted, {control.cancel, part(0, 0.4)});
     plan.settings = without_needless(plan.terms, settings);
     const bool path_is_free = settings.path.orders == settings_for(goal.quality).path.orders;
-    if (plan.settings.fluence.orders < 2 && path_is_free) plan.settings.path.orders = 1; // as all others
+    if (plan.settings.fluence.orders < 2 && path_is_free)
+        plan.settings.path.orders = 1; // single scattering, as in all others
     plan.terms_seconds = goal.clock() - start;
 
     const FrameOptions options{false, nullptr, control.cancel, part(0.4, 0.9), {}};

@@ -1,15 +1,15 @@
-// What a picture of a scene needs at an error or in a time: the terms of its light, and the mode that gets there.
+// Plans an image for a target error or a time budget: the lighting terms it needs, and the mode to render it.
 #pragma once
 #include "measure/plan/terms.h"
 #include "render/adaptive/contest.h"
 #include "render/adaptive/orders.h"
 
 namespace tyndall {
-// How one mode fared.
+// How one mode did in the contest.
 struct Standing {
     const Mode* mode = nullptr;
-    std::optional<Contender> best{}; // of its candidates; none of a look
-    std::string why;                 // it won or lost
+    std::optional<Contender> best{}; // of its candidates; none for artistic modes
+    std::string why;                 // it lost; empty for the winner
 };
 
 struct Plan {
@@ -17,7 +17,7 @@ struct Plan {
     std::vector<Term> terms;
     Settings settings; // without the terms that are not needed
     Contender chosen;
-    std::optional<OrdersError> orders{}; // of the main mode's grid, where light scatters more than once
+    std::optional<OrdersError> orders{}; // of the main mode's grid, with multiple scattering
     std::vector<Standing> standings{};   // the winner first
     double terms_seconds = 0, contest_seconds = 0;
 
@@ -27,10 +27,10 @@ struct Plan {
     std::string certificate() const;
 };
 
-// One of these modes, which must outlive it; path tracing where light that scatters more than once is to be nearer to
-// the truth than the others bring it. Throws Error (internal) when cancelled. `view` is the picture's; settings
-// are those of goal.quality but for rows set on purpose, which are kept. A plan may cost as much as it likes, or
-// `share` of what the main mode would take or of the seconds there are: then terms are not measured and all are kept.
+// Chooses one of `modes`, which must outlive the plan; path tracing if multiple scattering has to be more accurate than
+// the other modes can be. `view` is the image's; `settings` are those of goal.quality, except for rows set on purpose,
+// which are kept. Planning may take `share` times the time limit or, without one, the main mode's predicted time; with
+// a finite `share`, terms are not measured and all are kept. Throws Error (internal) when cancelled.
 Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
                Goal goal, const TermControl& control = {}, double share = infinity);
 

@@ -14,14 +14,14 @@
 
 namespace tyndall {
 namespace {
-// A picture to compare with the right one.
+// An image to compare with the reference.
 struct Variant {
     const Mode* mode;
     Snapshot snapshot;
     Settings settings;
 };
 
-// The march with surfaces and background as bright as without fog before them.
+// The march, except that fog does not attenuate surfaces and background.
 Mode undimmed_march() {
     Mode mode = main_mode();
     mode.prepare = [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
@@ -34,7 +34,7 @@ Mode undimmed_march() {
     return mode;
 }
 
-// Settings at which the march is right enough to tell what a term is worth: its own errors cancel.
+// Settings at which the march is accurate enough to measure terms: its own errors cancel.
 Settings careful(const Settings& settings) {
     for (const Candidate& candidate : ladder_of(main_mode(), settings))
         if (candidate.name == "final") {
@@ -49,7 +49,7 @@ struct Terms {
     const View& view;
     const Snapshot& snapshot;
     const Settings base;
-    double error; // asked for
+    double error; // the target
     const TermControl& control;
     std::optional<Pilot> pilot{}, marched{}; // made when first needed
     std::vector<Term> terms{};
@@ -76,8 +76,8 @@ struct Terms {
         return measure(against, look, steady_seconds).integrator;
     }
 
-    // Root mean square over mean of the picture, whichever is larger of its colour and its fog light: no E is larger
-    // than this times the largest relative error of a pixel.
+    // Root mean square over mean of the image's color or of its fog light, whichever is larger: E is at most this times
+    // the largest relative error of a pixel.
     double contrast() {
         double squares[2] = {}, means[2] = {}, weights[2] = {};
         const std::vector<vec3>& values = usual().truth;
@@ -93,8 +93,8 @@ struct Terms {
         return most;
     }
 
-    // A term with the largest relative error of a pixel without it, for certain; infinite where none is known. It is
-    // measured only if that does not do.
+    // Adds a term. `most` bounds the relative error of every pixel without it; infinite if no bound is known. The term
+    // is measured only if that bound is too large.
     template<class MakeVariant>
     void add(Term term, double most, const Pilot& (Terms::*against)(), const MakeVariant& variant) {
         const double allowed = term_share * error, bound = most == 0 ? 0 : most * contrast();
@@ -114,7 +114,7 @@ struct Terms {
     Variant changed() const { return {&main_mode(), snapshot, base}; }
 };
 
-// The scene without the shadows of one of its lights, at each of the shutter's moments: those may have fewer lights.
+// The snapshot without the shadows of one light, also at the moments of the shutter, which may have fewer lights.
 Snapshot without_shadows(Snapshot snapshot, size_t light) {
     snapshot.lights[light].shadows = false;
     if (!snapshot.moments) return snapshot;
@@ -143,7 +143,7 @@ void add_shadows(Terms& terms) {
     }
 }
 
-// Left out, or the same for all points: exp(-d) against 1 is off by less than e^d - 1 of what is right.
+// Left out or approximated: the relative error of 1 in place of exp(-d) is e^d - 1.
 void add_dimming(Terms& terms, double thickest) {
     const std::pair<LightTransmittance, const char*> ways[] = {{LightTransmittance::off, "left out"},
                                                                {LightTransmittance::average, "average"},
@@ -161,7 +161,7 @@ void add_dimming(Terms& terms, double thickest) {
     }
 }
 
-// Isotropic light against the least that fog scatters into any direction.
+// Relative error of isotropic scattering in the direction in which the fog scatters least.
 double phase_bound(const Snapshot& snapshot) {
     double most = 0;
     for (const Medium& medium : snapshot.media)
@@ -202,7 +202,7 @@ void add_surfaces(Terms& terms, double thickest) {
 }
 
 namespace {
-// The power that fog scatters again, over what it scatters once: as an error, since it is what the picture lacks.
+// The power that is scattered more than once over that scattered once; taken as an error, since the image lacks it.
 void add_orders(Terms& terms) {
     const ScatteringRatio found = measured_ratio(terms.snapshot);
     Term term{"multiple scattering", "", "left out", found.ratio, found.high};

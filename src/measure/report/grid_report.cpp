@@ -38,7 +38,7 @@ std::string kind_text(const VdbGridInfo& grid) {
 }
 
 namespace {
-// The linear part of a transform when it is more than a scale along the axes.
+// The linear part of a transform if it is more than a positive scale along the axes.
 std::string axes_text(const VdbGridInfo& grid) {
     const dmat4& m = grid.index_to_world;
     const bool along_axes =
@@ -62,7 +62,7 @@ std::vector<std::pair<std::string, std::string>> grid_rows(const VdbGridInfo& gr
                                     " leaves and " + count_text(grid.tiles, "tile") + ", " +
                                     bytes_text(static_cast<double>(grid.memory_bytes)));
     const Box bounds = world_bounds(grid);
-    if (!grid.usable && bounds.empty()) return rows; // only grids of densities are looked through
+    if (!grid.usable && bounds.empty()) return rows; // only density grids are scanned
     const ivec3 across = voxels_across(grid);
     rows.emplace_back("extent", formatted("%d x %d x %d voxels of %s m", across.x, across.y, across.z,
                                           vector_text(grid.voxel_size).c_str()));

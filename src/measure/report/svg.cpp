@@ -6,7 +6,7 @@
 
 namespace tyndall {
 namespace {
-constexpr double letter = 6.3; // mean width at 12 units
+constexpr double letter = 6.3; // mean width at a font size of 12
 
 const char* name_of(Anchor anchor) {
     return anchor == Anchor::start ? "start" : anchor == Anchor::middle ? "middle" : "end";

@@ -1,4 +1,4 @@
-// Drawings as SVG files that need nothing else.
+// Self-contained SVG drawings.
 #pragma once
 #include <string>
 #include <string_view>
@@ -6,17 +6,17 @@
 namespace tyndall {
 enum class Anchor { start, middle, end };
 
-// Of text as it is drawn, about: letters of 12 units.
+// Approximate width of text at a font size of 12; text cut to a width.
 double text_width(std::string_view text);
 std::string shortened(std::string_view text, double width);
 
-// The smallest of 1, 2, 5, 10, 20 ... or their tenths that goes into a length at most so often.
+// The smallest of 1, 2 and 5 times a power of ten that divides `length` into at most `most` intervals.
 double tick_of(double length, double most);
 
-// Text with what XML cannot hold replaced.
+// Text with XML's special characters escaped and control characters replaced.
 std::string xml_text(std::string_view text);
 
-// Elements one after the other; coordinates in pixels from the upper left.
+// Elements in drawing order; coordinates in pixels from the upper left.
 class Svg {
 public:
     void line(double x1, double y1, double x2, double y2, const char* color, double thickness, const char* dashes = "");

@@ -58,7 +58,7 @@ std::shared_ptr<const Environment> sky_of(int columns, const std::function<vec3(
 }
 
 namespace {
-// With so many moments; 0 = as many as are usual.
+// A scene at `count` moments of its shutter; 0 = the default count.
 StressScene at_moments(std::shared_ptr<Scene> scene, int count) {
     RenderRequest request;
     request.resolution = authored_size, request.time_samples = count;

@@ -1,4 +1,4 @@
-// What scenes are authored with beside lamps and fog: flames, faces, skies, an open shutter. Internal to stress.
+// Parts of scenes beyond lamps and fog: flames, area lights, skies, an open shutter. Internal to stress.
 #pragma once
 #include "measure/stress/trial.h"
 #include "scene/area_shape.h"
@@ -8,10 +8,10 @@
 #include <functional>
 
 namespace tyndall {
-// Where light is found by chance, fewer pixels do: of the shape of stress_size.
+// Image size where light is randomly sampled: fewer pixels, about the aspect ratio of stress_size.
 constexpr ivec2 authored_size{40, 24};
 
-// Against the truth, what techniques are asked for whatever a scene has: an error of 10 %, a bias of 2 %.
+// Against the ground truth, the same for every scene: an error of 10 % and a bias of 2 % are allowed.
 inline constexpr std::string_view with_bias = "relative RMSE of image or fog light; bias of the fog's mean light";
 StressMeasure usual_measure();
 
@@ -20,25 +20,25 @@ Medium thin_haze(float extinction = 0.1f, const Phase& phase = {});
 // A flame on a base, with its smoke.
 struct Flame {
     vec3 base{0};
-    float height = 1, core = 1900, edge = 1100; // metres, kelvin
+    float height = 1, core = 1900, edge = 1100; // meters, kelvin
     float smoke = 1;                            // extinction, 1/m
     BlackbodyKind kind = BlackbodyKind::kelvin;
 };
 std::vector<Medium> burning(const Flame& flame);
 
-// Of 1 nit; half its width and height, or the radius twice. The lights with a face come after all others.
+// An area light of 1 nit; `half`: half its width and height, or its radius twice. Area lights come after all others.
 Light face_light(LightKind kind, vec3 center, vec3 normal, vec2 half);
 
-// A map of directions, as wide as `columns` texels, of what a function gives for their middles.
+// A latitude-longitude map, `columns` texels wide, of the radiance at texel centers.
 std::shared_ptr<const Environment> sky_of(int columns, const std::function<vec3(vec3 direction)>& radiance);
 
-// A scene of that shutter, in seconds that are frames; its truth is of 64 moments.
+// A scene with that shutter, in frames of one second; its ground truth is rendered at 64 moments.
 StressScene shuttered(Scene scene, double open, double close);
 
-// Fog, lights, surfaces and camera of a stress scene, as many pixels as where light is found by chance.
+// A stress scene rendered at authored_size.
 StressScene authored(std::vector<Medium> media, std::vector<Light> lights, Camera camera, std::vector<Mesh> meshes = {},
                      std::vector<Material> materials = {});
 
-// Fog as a scene file has it, with what each channel meets.
+// Sets a scene's fog as a scene file does, extinction per channel included.
 void use_media(const std::vector<MediumSource>& media, StressScene& scene);
 }

@@ -17,14 +17,14 @@
 
 namespace tyndall {
 namespace {
-// What a pixel's few looks at a beam miss of what is finer than they; of a spot's light shadows leave a third.
+// A pixel's few samples of a beam miss finer detail; shadows leave a third of a spot's light.
 const std::vector<Excuse> excuses{
     {&limitation::sampled_gobo, 0.5}, {&limitation::blurred_filter, 0.5}, {&limitation::few_steps_for_glow, 2},
     {&limitation::deep_froxels},      {&limitation::deep_steps},          {&limitation::coarse_shafts},
     {&limitation::grainy_edges},      {&limitation::no_shadows, 3}};
 const Camera beside = camera_from({0, 0.5f, 5}, {0, 0.5f, 0});
 
-// Candela over the angle from the aim, 0 to 90 degrees.
+// An IES profile of candela over the angle from the light's axis, 0 to 90 degrees.
 std::shared_ptr<const IesProfile> profile(std::string name, const std::function<double(double degrees)>& candela) {
     IesFile file;
     file.horizontal = {0};
@@ -32,7 +32,7 @@ std::shared_ptr<const IesProfile> profile(std::string name, const std::function<
     return make_ies_profile(file, std::move(name));
 }
 
-// A lamp as scene files have it.
+// A lamp as in a scene file.
 StressScene lit_by(std::shared_ptr<const IesProfile> profile) {
     Scene scene;
     LightSource& lamp = scene.lights.emplace_back();
@@ -41,7 +41,7 @@ StressScene lit_by(std::shared_ptr<const IesProfile> profile) {
     return stress_scene({thin_haze(0.2f)}, make_snapshot(scene, Moment{0, 0}).lights, beside);
 }
 
-// Even up to 25 degrees, nothing from so many more on.
+// Constant up to 25 degrees, then falling to 0 within `width` degrees.
 StressScene cut_off(double width) {
     return lit_by(profile("edge " + std::to_string(width),
                           [&](double at) { return std::clamp((25 + width - at) / width, 0.0, 1.0); }));

@@ -1,4 +1,4 @@
-// Fog that dims the channels differently.
+// Fog whose extinction differs between the channels.
 #include "measure/stress/authored.h"
 #include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
@@ -57,7 +57,7 @@ StressScene shaft(double slit) {
                      quad({0.137f + half, 2, -20}, {20 - half, 0, 0}, {0, 0, 40}, 0)});
 }
 
-// White behind it: what each channel leaves, in closed form, seen straight on.
+// A white background behind it, seen head-on: the transmittance of each channel has a closed form.
 StressScene before_white(double depth) {
     const float d = static_cast<float>(depth);
     StressScene scene = stress_scene({}, {}, flat_camera({0, 0, 5}, vec3(0), 1));

@@ -12,8 +12,8 @@
 
 namespace tyndall {
 namespace {
-// Within a step or cell the fog is one sample of what spreads by 0.95 of its mean (`roughness`), less where that is
-// smoothed. The light of wisps has a root mean square of 2.7 of its mean: spread evenly it is off by
+// A step or cell takes one sample of a density whose standard deviation is 0.95 of its mean (`roughness`), less where
+// it is smoothed. The light of wisps has a root mean square of 2.7 times its mean: spread evenly, its relative error is
 // sqrt(2.7 * 2.7 - 1) = 2.5.
 constexpr Excuse noise{&limitation::long_steps, 0.9}, homogeneous{&limitation::drawn_as_homogeneous, 2.5};
 const std::vector<Excuse> detail{noise,
@@ -28,7 +28,7 @@ const std::vector<Excuse> shafts{noise,
                                  {&limitation::coarse_shafts},
                                  {&limitation::grainy_edges, noise.up_to}};
 
-// A round cloud, scaled (1, 2, 5) and sheared; a mirror for negative values.
+// The transform of a round cloud: scaled by (1, 2, 5) and sheared; mirrored for negative values.
 dmat4 skew(double shear) {
     dmat4 matrix(1);
     matrix[1] = glm::dvec4(std::abs(shear), 2, 0, 0), matrix[2] = glm::dvec4(0, 0.5 * shear, 5, 0);
@@ -42,7 +42,8 @@ StressScene skewed(double shear) {
     return stress_scene({medium_of(volume, 1)}, {noon_light}, camera_from(center + vec3(1, 2, 9), center, 0.35f));
 }
 
-// In the cloud's own space each ray crosses exp(-24 r^2): its depth is sqrt(pi / 24) exp(-24 h^2) by its stretch there.
+// In object space the density is exp(-24 r^2): a ray that passes the center at distance h has the optical depth
+// sqrt(pi / 24) exp(-24 h^2) / length, where length is that of the ray's unit direction in object space.
 double depth_off(Trial& trial) {
     const Layers layers = trial.render();
     const dmat4 own = glm::inverse(skew(trial.value));
@@ -72,7 +73,7 @@ StressScene sized(float s) {
 StressScene of_size(double size) { return sized(static_cast<float>(size)); }
 double size_off(Trial& trial) { return difference(trial.render(), trial.render(sized(1))); }
 
-// Of a picture that shows a block and the voxel around it in which it fades.
+// Height of an image that shows a block and the voxel around it in which it fades.
 float block_height(ivec3 size) { return static_cast<float>(std::max(size.x, size.y) + 2) / 16; }
 
 // A block of voxels in the middle of a grid, and nothing else.
@@ -89,11 +90,11 @@ StressScene block(ivec3 size) {
     return stress_scene({medium_of(volume, 8)}, {noon_light},
                         flat_camera(center + vec3(0, 0, 3), center, block_height(size)));
 }
-// Pixels and steps, where these are of one length, divide its voxels evenly.
+// Pixels, and steps of constant length, divide its voxels evenly.
 StressScene small_block(double side) { return block(ivec3(static_cast<int>(side))); }
 StressScene flat_block(double layers) { return block({6, 6, static_cast<int>(layers)}); }
 
-// Optical depth over the whole picture: each voxel counts for its volume.
+// Optical depth integrated over the image: each voxel counts by its volume.
 double mass_off(Trial& trial) {
     const Layers layers = trial.render();
     const double side = trial.value / 16, pixel = (side + 2.0 / 16) / layers.size.y;
@@ -102,8 +103,8 @@ double mass_off(Trial& trial) {
     return std::abs(sum / (8 * side * side * side) - 1);
 }
 
-// Density grows along x, over the faces of all leaves. Only the middle half of the grid is drawn, so that no ray sees
-// how the last voxels fade.
+// Density grows along x, across the faces of all leaves. Only the middle half of the grid is rendered, so that no ray
+// meets the fading voxels at its border.
 constexpr float ramp_depth = 0.5f;
 StressScene ramp(double voxels) {
     Medium fog = medium_of(unit_volume(static_cast<int>(voxels), [](vec3 p) { return p.x; }), 2);

@@ -1,4 +1,4 @@
-// Rectangles, discs and balls that light fog: huge, edge on, next to the eye, half hidden.
+// Rectangle, disc and sphere lights in fog: huge, edge on, next to the eye, half hidden.
 #include "measure/stress/authored.h"
 #include "modes/area_light_limitations.h"
 #include "modes/cone/limitations.h"
@@ -44,7 +44,7 @@ StressScene edge_on(double degrees) {
     return lit_by(face_light(LightKind::rectangle, vec3(0), {0, std::cos(a), std::sin(a)}, vec2(0.6f)));
 }
 
-// The fog begins that far below it, or it stands in the fog.
+// The fog begins `gap` below the light; a negative gap puts the light into the fog.
 StressScene over_fog(double gap) {
     const Box box{vec3(-2, -2, -2), vec3(2, 0.8f - static_cast<float>(gap), 2)};
     return lit_by(face_light(LightKind::rectangle, {0, 0.8f, 0}, {0, -1, 0}, vec2(0.5f)), beside,
@@ -60,7 +60,7 @@ StressScene in_fog(double extinction) {
     return lit_by(above(LightKind::disc, 0.3), beside, thin_haze(static_cast<float>(extinction)));
 }
 
-// A plate below it: half shadow all around.
+// A plate below it, with a penumbra all around.
 StressScene over_plate(double half) {
     return lit_by(face_light(LightKind::rectangle, {0, 1.5f, 0}, {0, -1, 0}, vec2(static_cast<float>(half))), beside,
                   thin_haze(), {box_of({-0.5f, 0.4f, -0.5f}, {0.5f, 0.45f, 0.5f}, 0)});

@@ -1,4 +1,4 @@
-// Grids as files hold them: bad voxels, tiles, a background, nothing at all.
+// Grids as stored in files: bad voxels, tiles, a background, nothing at all.
 #include "measure/stress/volumes.h"
 #include "scene/mesh.h"
 #include "volume/bricks/sparse_volume.h"
@@ -12,7 +12,7 @@
 
 namespace tyndall {
 namespace {
-// A grid as a file holds it, a share of whose voxels is `value`; and what is left when those are taken as empty.
+// A grid as read from a file in which a share of the voxels has bad values, and the same grid with those empty.
 struct BadGrid {
     SparseVolume mended, emptied;
     bool counted = false;
@@ -64,7 +64,7 @@ double tiles_off(Trial& trial) {
     return difference(trial.render(), trial.render(looking_at(medium_of(dense, 2))));
 }
 
-// Two leaves in opposite corners. What lies between has the density of the background; outside there is none.
+// Two leaves in opposite corners. Between them the density is that of the background; outside there is none.
 bool in_corner(ivec3 origin) { return origin == ivec3(0) || origin == ivec3(8); }
 StressScene with_background(double density) {
     const SparseVolume dense = unit_volume(16, [](vec3 p) { return blob(p); });

@@ -1,4 +1,4 @@
-// Lights that send their light here and not there: IES profiles that get narrow, gobos that get fine.
+// Lights with filters: IES profiles that get narrow, gobos that get fine.
 #include "measure/stress/trial.h"
 #include "modes/froxel/limitations.h"
 #include "modes/light_filters.h"
@@ -9,7 +9,7 @@
 
 namespace tyndall {
 namespace {
-// What a pixel's few looks at a beam miss of squares that are finer than they.
+// A pixel's few samples of a beam miss finer squares.
 const std::vector<Excuse> edges{{&limitation::sampled_gobo, 0.5},
                                 {&limitation::blurred_filter, 0.5},
                                 {&limitation::few_steps_for_glow, 2},

@@ -1,4 +1,4 @@
-// Fog that gives off light by its temperature: flames small and large, near and far, hidden and veiled.
+// Blackbody emission of fog: flames small and large, near and far, hidden and veiled.
 #include "measure/stress/authored.h"
 #include "modes/area_light_limitations.h"
 #include "modes/froxel/limitations.h"
@@ -12,7 +12,8 @@
 
 namespace tyndall {
 namespace {
-// Detail of smoke within a step or cell as of grids (0.9, data.cpp); one place in a step beside a lamp as of those (2).
+// Detail of smoke within a step or cell counts as in grids (0.9, data.cpp), one sample per step near a flame as near a
+// lamp (2, lamps.cpp).
 const std::vector<Excuse> excuses{{&limitation::lamps_for_fire},        {&limitation::drawn_as_homogeneous},
                                   {&limitation::mean_emission_color},   {&limitation::long_steps, 0.9},
                                   {&limitation::light_grid_cells, 0.9}, {&limitation::deep_steps, 0.9},

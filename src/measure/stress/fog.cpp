@@ -1,4 +1,4 @@
-// Fog without surfaces: thin, thick, layered, thin sheets, several at once, and what closed forms say of it.
+// Fog without surfaces: thin, thick, layered, thin sheets, several at once, and checks against closed forms.
 #include "measure/stress/trial.h"
 #include "modes/froxel/limitations.h"
 #include "modes/shadow_map/limitations.h"
@@ -14,11 +14,12 @@
 
 namespace tyndall {
 namespace {
-// The sun comes at a slant, so that its light fades six times as fast as a step is deep: over 5 depths where the limit
-// says 0.9. One place in it is off by sqrt(2.5 coth(2.5) - 1) = 1.2 of the light.
+// The sun is at a slant, so that its light fades six times as fast as a step is deep: over 5 optical depths where the
+// limitation states 0.9. One sample per step then has a relative error of sqrt(2.5 coth(2.5) - 1) = 1.2.
 const std::vector<Excuse> thick{
     {&limitation::light_grid_cells, 1.2}, {&limitation::deep_steps, 1.2}, {&limitation::deep_froxels, 1.2}};
-// Straight on, it fades by 2.5 depths over the deepest step: in its middle is 1.25 / sinh(1.25) = 0.78 of the mean.
+// Along the view, it fades over 2.5 optical depths in the deepest step: in its middle, light is
+// 1.25 / sinh(1.25) = 0.78 of the mean.
 const std::vector<Excuse> straight{
     {&limitation::light_grid_cells, 0.25}, {&limitation::deep_steps, 0.25}, {&limitation::deep_froxels, 0.25}};
 
@@ -50,7 +51,7 @@ double transmittance_off(Trial& trial) {
     return most;
 }
 
-// Fog between z = -3 and 3, no end to the sides, lit along the view: what is scattered back once.
+// Fog between z = -3 and 3 that extends far to the sides, lit along the view: single backscattering.
 StressScene slab(double depth) {
     const float extinction = static_cast<float>(depth) / 6;
     const Box box{vec3(-50, -50, -3), vec3(50, 50, 3)};
@@ -70,7 +71,7 @@ StressScene sheet(double thickness) {
                         {noon}, camera_from({1, 1, 5}, vec3(0)));
 }
 
-// Rays that run in the face of the box, and beside it.
+// Rays that run in a face of the box, and beside it.
 StressScene in_the_face(double offset) {
     const float y = 1 + static_cast<float>(offset); // of the middle row
     return stress_scene({homogeneous_medium(0.3f, {vec3(-1), vec3(1)})}, {noon}, flat_camera({0, y, 5}, {0, y, 0}, 2));
@@ -122,7 +123,7 @@ double copies_off(Trial& trial) {
     return difference(trial.render(copies(static_cast<int>(trial.value))), trial.render());
 }
 
-// Two clouds, one in the other, of other colour and phase.
+// Two clouds, one inside the other, of different color and phase function.
 StressScene nested(double share) {
     Medium inner = homogeneous_medium(2, {vec3(-0.6f), vec3(0.6f)}, forward_phase(0.7f), vec3(0.9f, 0.4f, 0.2f));
     inner.world_bounds.low += vec3(static_cast<float>(share)), inner.density.bounds = inner.world_bounds;
@@ -142,7 +143,7 @@ StressScene bright_behind(double depth) {
     return scene;
 }
 
-// The mean of as many frames as the pattern of the jitter has: what of it stays.
+// Error of the mean over one period of the jitter's pattern.
 double pattern_left(Trial& trial) {
     Image<vec3> sum(stress_size, vec3(0));
     StressScene scene = trial.scene;

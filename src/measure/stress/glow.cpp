@@ -1,4 +1,4 @@
-// Surfaces that glow: what fog scatters of their light.
+// Emissive surfaces, whose light fog scatters.
 #include "measure/stress/authored.h"
 #include "modes/area_light_limitations.h"
 #include "modes/cone/limitations.h"
@@ -31,7 +31,7 @@ Mesh plate(float width, float height) {
 
 StressScene of_side(double side) { return glowing({plate(static_cast<float>(side), static_cast<float>(side))}); }
 
-// Of one area.
+// Its area stays the same.
 StressScene of_length(double length) {
     return glowing({plate(static_cast<float>(length), 0.04f / static_cast<float>(length))});
 }
@@ -45,7 +45,7 @@ StressScene in_fog(double extinction) {
     return glowing({plate(0.5f, 0.5f)}, beside, thin_haze(static_cast<float>(extinction)));
 }
 
-// Bars before it that leave half of the view.
+// Bars in front that hide half of it.
 StressScene behind_grille(double bar) {
     std::vector<Mesh> meshes{plate(1, 1)};
     const float width = static_cast<float>(bar);

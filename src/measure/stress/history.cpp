@@ -1,5 +1,4 @@
-// Modes that look back at the frames before: lights that move, dim and go out, cuts, a bad frame; and the voxels of
-// the view that hold this light.
+// Temporal reuse: lights that move, dim and go out, cuts, a bad frame; and the froxels that hold this light.
 #include "measure/stress/trial.h"
 #include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
@@ -21,12 +20,12 @@
 namespace tyndall {
 namespace {
 constexpr int long_enough = 8; // frames until a history has settled
-// The light of eight frames lies along a way nearly as long as the beam is wide: half of it elsewhere.
+// Over eight frames the beam moves by nearly its width: half of the history's light is elsewhere.
 const std::vector<Excuse> trail_of_froxels{{&limitation::moving_light, 0.5}};
 const std::vector<Excuse> trail_of_shadows{{&limitation::moving_shadows, 0.5}};
 const std::vector<Excuse> trail_of_fog{{&limitation::moving_fog, 0.7}};
 const std::vector<Excuse> blur_of_froxels{{&limitation::moving_camera, 0.1}};
-// The eye moves by 0.2 optical depths, and light within a froxel is one value: it may jump by that.
+// The eye moves by 0.2 optical depths, and light is constant within a froxel: it may jump by as much.
 const std::vector<Excuse> blurred{
     {&limitation::light_grid_cells, 0.22}, {&limitation::deep_steps, 0.22}, {&limitation::deep_froxels, 0.22}};
 const std::vector<Excuse> unseen{
@@ -51,7 +50,7 @@ Light spot_at(float x) {
 }
 StressScene lit(double) { return spot_and_sun(spot_at(0.3f)); }
 
-// The same, of a file that has keys for the spot's place.
+// The same, with keyframes for the spot's position in the scene.
 StressScene lit_by_moving(double) {
     StressScene scene = lit(0);
     LightSource source;
@@ -61,7 +60,7 @@ StressScene lit_by_moving(double) {
     return scene;
 }
 
-// Frame n of a shot: jitter moves on, surfaces stay those of `first`.
+// Renders a frame of a shot: jitter advances, surfaces stay those of `first`.
 Layers next_frame(Trial& trial, StressScene scene, const StressScene& first, int frame, History& history) {
     scene.scene = first.scene, scene.snapshot.scene = first.scene.get();
     scene.snapshot.occluders = first.snapshot.occluders;
@@ -73,7 +72,7 @@ void settle(Trial& trial, const StressScene& scene, History& history) {
     for (int frame = 0; frame < long_enough; ++frame) next_frame(trial, scene, scene, frame, history);
 }
 
-// A light changes to `factor` of its intensity: the share of it that is missing or left so many frames later.
+// A light changes to `factor` of its intensity: the share of its light that is missing or left after `frames` frames.
 double off_after(Trial& trial, float factor, int frames) {
     History history;
     settle(trial, trial.scene, history);
@@ -90,7 +89,7 @@ double off_after(Trial& trial, float factor, int frames) {
 double left_when_out(Trial& trial) { return off_after(trial, 0, static_cast<int>(trial.value)); }
 double left_when_dimmed(Trial& trial) { return off_after(trial, static_cast<float>(trial.value), 4); }
 
-// Film in a spot: its gobo's image is another one in every frame of a sequence.
+// A spot that projects film: its gobo's image changes in every frame.
 StressScene film(int squares) {
     Light spot = spot_at(0.3f);
     spot.radius = 0;
@@ -98,11 +97,12 @@ StressScene film(int squares) {
 }
 StressScene first_image(double) { return film(2); }
 
-// The share of the change to another picture that is missing so many frames later: noise averages out.
+// The share of the change to the image of `next` that is missing after trial.value frames; noise averages out.
 double left_of_change(Trial& trial, StressScene next) {
     History history;
     settle(trial, trial.scene, history);
-    const std::shared_ptr<Scene> surfaces = std::exchange(next.scene, trial.scene.scene); // the history is of one scene
+    const std::shared_ptr<Scene> surfaces =
+        std::exchange(next.scene, trial.scene.scene); // a history belongs to one scene
     next.snapshot.scene = next.scene.get();
     Layers last;
     for (int i = 0; i < static_cast<int>(trial.value); ++i) {
@@ -121,7 +121,7 @@ double left_of_change(Trial& trial, StressScene next) {
 }
 double left_of_image(Trial& trial) { return left_of_change(trial, film(3)); }
 
-// A door in the roof, of a file that has keys for its place.
+// A door in the roof, with keyframes for its position.
 StressScene behind_door(float x) {
     std::vector<Mesh> meshes = roof();
     meshes.push_back(box_of({x, 1.9f, -9}, {x + 0.6f, 1.95f, 9}, -1));
@@ -135,7 +135,7 @@ StressScene behind_door(float x) {
 StressScene open_door(double) { return behind_door(-0.9f); }
 double left_of_shadow(Trial& trial) { return left_of_change(trial, behind_door(-0.5f)); }
 
-// A puff that drifts by half of itself, of a file that has keys for its place.
+// A puff that drifts by half its size, with keyframes for its position.
 StressScene puff_at(float x) {
     Medium puff = homogeneous_medium(2, {vec3(x - 0.4f, -0.4f, -0.4f), vec3(x + 0.4f, 0.4f, 0.4f)});
     puff.name = "puff";
@@ -149,7 +149,7 @@ StressScene puff_at(float x) {
 StressScene drifting_puff(double) { return puff_at(-0.2f); }
 double left_of_puff(Trial& trial) { return left_of_change(trial, puff_at(0.2f)); }
 
-// A spot that moves by so much a frame: how much worse with a history than without.
+// A spot that moves by trial.value per frame: the error with a history less that without.
 double trail(Trial& trial) {
     History history;
     const float step = static_cast<float>(trial.value);
@@ -163,13 +163,13 @@ double trail(Trial& trial) {
     return difference(last, truth) - difference(trial.render(scene), truth);
 }
 
-// A pillar close to the eye, which moves by so much a frame: what comes out from behind it must not lag.
+// The eye moves past a pillar close to it: what is uncovered must not lag.
 StressScene behind_pillar(float x) {
     std::vector<Mesh> meshes = roof();
     meshes.push_back(box_of({-0.2f, -3, 3.5f}, {0.2f, 2, 3.8f}, -1));
     return stress_scene({dust()}, {slanting}, camera_from({x, 0, 6}, {x, 0, 0}), meshes);
 }
-// Of a file that has keys for the eye's place.
+// With keyframes for the eye's position.
 StressScene pillar(double) {
     StressScene scene = behind_pillar(-1);
     CameraSource source;
@@ -215,7 +215,7 @@ double after_cut(Trial& trial) {
     return difference(picture, trial.render(other, &none));
 }
 
-// A frame of fog that is no number: the next must show nothing of it.
+// A frame whose fog light is NaN or infinite: the next must show nothing of it.
 double after_bad_frame(Trial& trial) {
     History history;
     settle(trial, trial.scene, history);
@@ -223,7 +223,7 @@ double after_bad_frame(Trial& trial) {
     StressScene bad = trial.scene;
     bad.snapshot.media[0].optics.emission.radiance = vec3(static_cast<float>(trial.value));
     next_frame(trial, bad, trial.scene, long_enough, history);
-    trial.faults.non_finite = before; // of the bad frame itself
+    trial.faults.non_finite = before; // the bad frame itself does not count
     const Layers next = next_frame(trial, trial.scene, trial.scene, long_enough + 1, history);
     return difference(next, trial.truth());
 }
@@ -250,7 +250,7 @@ StressScene thick_around(double extinction) {
     return stress_scene({dust(static_cast<float>(extinction))}, {slanting}, camera_from(vec3(0), {0, 0, -1}));
 }
 
-// The eye moves by a centimetre: change beyond that of the truth.
+// The eye moves by a centimeter: the change of the mean beyond that of the ground truth.
 double nudge(Trial& trial) {
     StressScene moved = trial.scene;
     moved.view.camera.position.z -= 0.01f;

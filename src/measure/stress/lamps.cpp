@@ -1,4 +1,4 @@
-// Local lights in homogeneous fog, with nothing in their way: the geometry of cones, and the pole at the lamp.
+// Local lights in homogeneous fog, with nothing in their way: the geometry of cones, and the singularity at the lamp.
 #include "measure/stress/trial.h"
 #include "modes/cone/settings.h"
 #include "modes/froxel/limitations.h"
@@ -12,12 +12,11 @@
 
 namespace tyndall {
 namespace {
-// One place in a step is looked at. Where light fills a fifth of it, that is off by sqrt(1 / 0.2 - 1) = 2 of the light.
+// One sample per step: where light fills a fifth of the step, the relative error is sqrt(1 / 0.2 - 1) = 2.
 const std::vector<Excuse> glow{{&limitation::few_steps_for_glow, 2},
                                {&limitation::light_grid_cells},
                                {&limitation::deep_steps},
                                {&limitation::deep_froxels}};
-// Froxels spread what a lamp sends through them, so that only their mean is light.
 constexpr float degree = pi / 180;
 
 Medium haze(float extinction = 0.2f) { return homogeneous_medium(extinction, {vec3(-6), vec3(6)}); }
@@ -37,7 +36,7 @@ StressScene eye_in_apex(double distance) {
     return spot_scene(lamp(0.3f, 0.5f), camera_from({0, 2 - 0.2f * d, d}, {0, 1 - 0.2f * d, -4}));
 }
 
-// The middle ray goes through the lamp, which has a size: there is a most that this ray can see of it.
+// The middle ray goes through the lamp, whose radius bounds the light scattered along this ray.
 StressScene down_the_axis(double angle) {
     const float a = static_cast<float>(angle) * degree;
     const vec3 eye = vec3(0, 2, 0) + 3.0f * vec3(std::sin(a), std::cos(a), 0);
@@ -94,7 +93,7 @@ StressScene clipped(double radius) {
     return scene;
 }
 
-// By how much any pixel is brighter than without the clip.
+// The most that a pixel is brighter than without the clip, relative to the mean.
 double brighter_than_whole(Trial& trial) {
     StressScene whole = trial.scene;
     whole.settings.of<ConeSettings>().near_radius = 0;
@@ -147,6 +146,7 @@ std::vector<StressCase> stress_lamps() {
                    {0.3, 0.1, 0.01, 0}, Claim::lamps, glow, near_lamp),
         StressCase("near-point", group, "the same of a lamp without size", "middle ray to lamp", "m",
                    {0.3, 0.1, 0.01, 1e-3}, Claim::lamps, glow, near_point),
+        // Froxels average a lamp's light within each, so that only the mean over the image is right.
         StressCase("lamp-in-froxel", group, "the mean light of a lamp within a froxel", "middle ray to lamp", "m",
                    {0.3, 0.1, 0.01, 0}, "froxel", {}, near_lamp, {0.05, "error of the mean", error_of_mean}),
         StressCase("through-lamp", group, "no step where a ray meets the lamp itself", "middle ray to lamp", "m",

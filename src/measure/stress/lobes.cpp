@@ -12,8 +12,7 @@
 
 namespace tyndall {
 namespace {
-// One place in a step is looked at. Where a lobe fills a fifth of it, that is off by sqrt(1 / 0.2 - 1) = 2 of the
-// light.
+// One sample per step: where a lobe fills a fifth of the step, the relative error is sqrt(1 / 0.2 - 1) = 2.
 const std::vector<Excuse> excuses{{&limitation::few_steps_for_glow, 2},
                                   {&limitation::coarse_glow},
                                   {&limitation::deep_froxels},
@@ -23,7 +22,7 @@ const std::vector<Excuse> excuses{{&limitation::few_steps_for_glow, 2},
                                   {&limitation::no_shadows},
                                   {&limitation::sun_without_shadows}};
 
-// Looking past a lamp that shines this way.
+// Looking past a lamp that shines towards the eye.
 StressScene past_lamp(const Phase& phase, float extinction = 0.2f) {
     return stress_scene({thin_haze(extinction, phase)}, {point_light({0.5f, 0.4f, -1}, 10)},
                         camera_from({0, 0, 3}, vec3(0)));
@@ -36,7 +35,7 @@ Phase two_lobes(double share) {
     return mixed_phase(share, {PhaseKind::henyey_greenstein, 0.9f}, {PhaseKind::henyey_greenstein, -0.8f});
 }
 
-// A spike of half the light within so many degrees of straight on, on a flat floor.
+// A forward spike of half the light within `degrees`, on a constant floor.
 Phase spiked(double degrees) {
     PhaseTableNotes notes;
     const double spike = 2 / (1 - std::cos(glm::radians(degrees)));

@@ -1,4 +1,4 @@
-// The looks: brightness smeared over the picture, and beam cards. They promise no light, but manners.
+// Artistic modes: radial blur and beam cards. They promise no light transport, but must behave well.
 #include "measure/stress/trial.h"
 #include "modes/billboard/limitations.h"
 #include "modes/radial_blur/limitations.h"
@@ -14,7 +14,7 @@
 namespace tyndall {
 namespace {
 const Box cube{vec3(-8), vec3(8)};
-// Smears promise no light at all.
+// Radial blur promises no light at all.
 const std::vector<Excuse> no_light{{&limitation::screen_space, infinity}};
 const std::vector<Excuse> faded{{&limitation::card_edge_on}, {&limitation::camera_in_card}};
 
@@ -27,7 +27,7 @@ StressScene blur_scene(Light light, Camera camera, std::vector<Mesh> meshes = {}
 }
 const Camera ahead = camera_from({0, 0, 6}, vec3(0));
 
-// A sun so many degrees to the right of where the camera looks.
+// A sun `degrees` to the right of the view direction.
 StressScene sun_aside(double degrees) {
     const float a = static_cast<float>(degrees) * pi / 180;
     return blur_scene(sun_light({-std::sin(a), 0, std::cos(a)}, 10), ahead,
@@ -35,14 +35,14 @@ StressScene sun_aside(double degrees) {
 }
 double light_added(Trial& trial) { return max_of(trial.render().inscatter); }
 
-// How much brighter than a little further in.
+// How much brighter than with the sun one degree further in.
 double grows_outside(Trial& trial) {
     const double now = mean_of(trial.render().inscatter);
     const double before = mean_of(trial.render(sun_aside(trial.value - 1)).inscatter);
     return before > 0 ? std::max(0.0, now / before - 1) : now;
 }
 
-// By how much a turn of a quarter of a degree changes the picture.
+// How much a turn of a quarter of a degree changes the image.
 double pops(Trial& trial) {
     const double now = mean_of(trial.render().inscatter);
     const double next = mean_of(trial.render(sun_aside(trial.value + 0.25)).inscatter);
@@ -50,7 +50,7 @@ double pops(Trial& trial) {
     return std::abs(next - now) / middle;
 }
 
-// A white hot ball stands off the sun, in front of everything.
+// An emissive box beside the sun, in front of everything.
 StressScene hot(float emission) {
     Material material;
     material.emission = vec3(emission);
@@ -75,7 +75,7 @@ double samples_off(Trial& trial) {
     return std::abs(mean_of(trial.render().inscatter) / mean_of(trial.render(with_samples(256)).inscatter) - 1);
 }
 
-// The disc of a lamp in the middle of the picture, not smeared.
+// The disc of a lamp in the middle of the image, not smeared.
 StressScene disc(double aspect) {
     StressScene scene = blur_scene(point_light(vec3(0), 10), ahead);
     scene.view.size = {static_cast<int>(96 * aspect), 96};
@@ -132,7 +132,7 @@ double orbit_pops(Trial& trial) {
 StressScene holes(double n) { return wall_with_holes(static_cast<int>(n), around_beam(0)); }
 double energy(Trial& trial) { return mean_of(trial.render().inscatter) / mean_of(trial.truth().inscatter); }
 
-// The eye goes into the beam, from its side.
+// The eye enters the beam from the side.
 StressScene into_beam(double distance) {
     const float d = static_cast<float>(distance);
     return wall_with_holes(1, camera_from({1.5f, 1.5f, d}, {1.5f, 1.4f, -4}));
@@ -141,7 +141,7 @@ double much_brighter(Trial& trial) {
     return max_of(trial.render().inscatter) / max_of(trial.render(into_beam(4)).inscatter);
 }
 
-// A table top comes up into the beam: cards fade out before it instead of being cut.
+// A table top rises into the beam: cards fade out before it instead of being cut.
 StressScene table(double height) {
     StressScene scene = wall_with_holes(1, around_beam(20));
     const float y = static_cast<float>(height);

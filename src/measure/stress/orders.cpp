@@ -1,4 +1,4 @@
-// Light that scatters more than once: left out, added by a grid of fluence, and kept out by walls.
+// Multiple scattering: left out, added from a grid of fluence, and blocked by walls.
 #include "measure/stress/trial.h"
 #include "modes/mode.h"
 #include "modes/shared_limitations.h"
@@ -13,7 +13,7 @@
 namespace tyndall {
 namespace {
 
-// Of the light of the thickest fog here, more than a tenth has scattered once only.
+// In the thickest fog here, more than a tenth of the light has scattered only once.
 const std::vector<Excuse> once{{&limitation::single_scattering_only, 0.9}};
 const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 const Camera front = camera_from({0, 0, 4}, vec3(0));
@@ -30,7 +30,7 @@ StressScene furnace(double depth) {
     return scene;
 }
 
-// By how much the mean leaves 1 beyond three standard errors.
+// How far the mean is from 1, beyond three standard errors.
 double furnace_off(Trial& trial) {
     const Layers layers = trial.render();
     double mean = mean_of(layers.color), squares = 0;
@@ -39,7 +39,7 @@ double furnace_off(Trial& trial) {
     return std::max(0.0, std::abs(mean - 1) - 3 * std::sqrt(squares / (pixels * (pixels - 1))));
 }
 
-// Of the fog's mean light, against light of all orders.
+// Error of the fog's mean light against all scattering orders.
 double orders_off(Trial& trial) {
     StressScene all_light = trial.scene;
     all_light.settings.path.orders = all_orders, all_light.view.pixel_samples = 64;
@@ -84,7 +84,7 @@ Mesh turned(Mesh mesh, float angle) {
     return mesh;
 }
 
-// A floor through the fog, seen from right below it: the sun is above.
+// A floor through the fog, seen from just below it: the sun is above.
 StressScene under_floor(float thickness, float angle) {
     const vec3 down(std::sin(angle), -std::cos(angle), 0);
     const Mesh floor = turned(box_of({-4, -thickness, -4}, {4, 0, 4}, 0), angle);

@@ -1,4 +1,4 @@
-// What all modes stand on: numbers near the ends of their range, threads, crops, phase functions, noise, metrics.
+// What all modes rely on: numbers near the ends of their range, threads, crops, phase functions, noise, metrics.
 #include "measure/stress/trial.h"
 #include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
@@ -20,15 +20,15 @@
 
 namespace tyndall {
 namespace {
-// Places are known to 4 m at most, the gap is 1 m: what is lit may lie anywhere. Lit floors have a root mean square of
-// 3.4 of the picture's mean.
+// Positions are rounded to as much as 4 m, the gap is 1 m wide: light may fall anywhere. Lit floors have a root mean
+// square of 3.4 times the image's mean.
 const std::vector<Excuse> anywhere{{&limitation::float_precision, 4}};
 const std::vector<Excuse> coarse{{&limitation::coarse_shafts},
                                  {&limitation::grainy_edges},
                                  {&limitation::sun_without_shadows},
                                  {&limitation::no_shadows}};
 
-// A roof with a gap over fog, the sun and a spot; at a place and of a size.
+// A roof with a gap over fog, the sun and a spot; moved to a place and scaled.
 StressScene room_at(vec3 place, float size) {
     const auto box = [&](vec3 low, vec3 high) { return box_of(place + size * low, place + size * high, -1); };
     Light spot = spot_light(place + size * vec3(-1, 1.5f, 0), {0.3f, -1, 0}, 10 * size * size, 0.3f, 0.4f);
@@ -102,7 +102,7 @@ StressScene odd_size(double pixels) {
 
 // --- the program's own parts -----------------------------------------------------------------------------------------
 double phase_integral(Phase phase) {
-    // In u with cosine = 1 - 2 u^4 about the lobe: narrow lobes are resolved.
+    // Integrates over u with cosine = 1 - 2 u^4 about the lobe, which resolves narrow lobes.
     const double sign = phase.g < 0 ? -1 : 1;
     return integral(
         [&](double u) {
@@ -121,7 +121,7 @@ double schlick_off(Trial& trial) {
     return least < 0 ? infinity : std::abs(phase_integral(phase) - 1);
 }
 
-// Mean cosine of samples, beyond four standard errors: their deviation is below 1.
+// Error of the mean cosine of sampled directions.
 double sampling_off(Trial& trial) {
     constexpr int count = 1 << 16;
     const Phase phase{PhaseKind::henyey_greenstein, static_cast<float>(trial.value)};
@@ -133,7 +133,7 @@ double sampling_off(Trial& trial) {
     return std::abs(sum / count - std::min<double>(trial.value, largest_g));
 }
 
-// Points of a rough grid that are denser than the bound of their fog says.
+// Number of points of a rough grid that are denser than the majorant or the maximum of their brick.
 double majorant_off(Trial& trial) {
     const auto seed = static_cast<uint32_t>(trial.value);
     const Medium fog = grid_medium(1, 24, [seed](vec3 p) {
@@ -182,7 +182,7 @@ double loop_off(Trial& trial) {
     return most;
 }
 
-// The spread of noise values far away from the origin, against that near it.
+// Relative change of the noise's root mean square far from the origin.
 double noise_off(Trial& trial) {
     const auto spread = [](float away) {
         Points points(4096, 8);
@@ -196,7 +196,7 @@ double noise_off(Trial& trial) {
     return std::abs(spread(static_cast<float>(trial.value)) / spread(0) - 1);
 }
 
-// Voxels that hold fog by the recipe but are missing where it was grown.
+// Voxels that hold fog by the recipe but are missing in the grown grid.
 double culling_off(Trial& trial) {
     FogRecipe recipe = drifting(0);
     recipe.threshold = static_cast<float>(trial.value), recipe.voxel_size = 1.0 / 24;
@@ -221,7 +221,7 @@ double culling_off(Trial& trial) {
     return missing;
 }
 
-// Every metric of a picture against itself is finite and none.
+// Every metric of an image against itself must be finite and 0.
 double metrics_off(Trial& trial) {
     const Image<vec3> picture(ivec2(16, 16), vec3(static_cast<float>(trial.value)));
     const Errors errors = measure_errors(picture, picture);
@@ -231,7 +231,7 @@ double metrics_off(Trial& trial) {
     return std::abs(sum);
 }
 
-// Of what a file holds, to what it should, as far as half floats reach.
+// Relative error of stored values, clamped to the range of half floats.
 double stored_off(Trial& trial) {
     Layers layers;
     layers.display = layers.size = {8, 8};

@@ -1,4 +1,4 @@
-// How fog spreads light: lobes, signs, colours, layers.
+// How fog scatters light: lobes, signs, colors, layers.
 #include "measure/stress/trial.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
@@ -12,13 +12,13 @@ namespace {
 const Box unit{vec3(-1), vec3(1)};
 const Light noon = sun_light({0.3f, -1, -0.2f}, 10);
 
-// The middle of the picture looks by 3 degrees past the sun.
+// The middle of the image looks 3 degrees past the sun.
 StressScene towards_sun(double g) {
     const Medium fog = homogeneous_medium(0.4f, unit, forward_phase(static_cast<float>(g)));
     return stress_scene({fog}, {sun_light({0.05f, 0, 1}, 10)}, camera_from({0, 0, 4}, vec3(0)));
 }
 
-// A thin sheet, so that light and fog are the same seen along the sun's way and against it.
+// Optically thin fog, so that its attenuation is the same seen along the sun's direction and against it.
 StressScene narrow(double g, float z) {
     const Medium fog = homogeneous_medium(0.01f, unit, forward_phase(static_cast<float>(g)));
     StressScene scene = stress_scene({fog}, {sun_light({0, 0, 1}, 10)}, camera_from({0, 0, z}, vec3(0), 1e-3f));
@@ -32,7 +32,7 @@ StressScene towards_sun_in_droplets(double diameter) {
 
 StressScene into_sun(double g) { return narrow(g, 4); }
 
-// Looking at the sun is ((1 + g) / (1 - g))^3 times as bright as looking away from it.
+// The view towards the sun is ((1 + g) / (1 - g))^3 times as bright as the view away from it.
 double ratio_off(Trial& trial) {
     const double g = trial.value;
     const double into = mean_of(trial.render().inscatter), away = mean_of(trial.render(narrow(g, -4)).inscatter);
@@ -73,7 +73,7 @@ StressScene dim_or_bright(double) {
     return stress_scene({homogeneous_medium(0.4f, unit, forward_phase(0.3f))}, {noon}, camera_from({0, 0, 4}, vec3(0)));
 }
 
-// Light is linear: the picture of a sun of other strength, divided by it.
+// Light is linear: the image of a sun scaled by a factor, divided by that factor.
 double not_linear(Trial& trial) {
     const float factor = static_cast<float>(trial.value);
     StressScene other = trial.scene;
@@ -91,7 +91,7 @@ StressScene two_colours(double) {
                         camera_from({0, 0, 4}, vec3(0)));
 }
 
-// The layers of the lights together are the fog's light as it is found without them.
+// The layers of the lights must add up to the fog light that is rendered without layers.
 double sum_off(Trial& trial) {
     const Layers layers = trial.render();
     Layers sum = trial.render(trial.scene, nullptr, true);

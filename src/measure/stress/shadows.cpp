@@ -1,4 +1,4 @@
-// Surfaces in the way of the light: slits, wires, rooms, meshes of every quality, eyes in shadow.
+// Surfaces that block light: slits, wires, rooms, meshes of every quality, eyes in shadow.
 #include "measure/stress/trial.h"
 #include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
@@ -17,15 +17,15 @@
 namespace tyndall {
 namespace {
 const Excuse as_froxels{&limitation::coarse_shafts}, as_noise{&limitation::grainy_edges};
-// A spot's light is three times as much as its shadows leave of it.
+// Without its shadows, a spot's light is three times as much.
 const Excuse sun_unseen{&limitation::sun_without_shadows}, unseen{&limitation::no_shadows, 3};
-// Four places in each of 24 steps are looked at. Light that fills a third of the way between them, as that of the
-// narrowest shafts here, is off by sqrt(1 / 0.3 - 1) = 1.5 of itself.
+// Four samples in each of 24 steps. Light that fills a third of the distance between them, as in the narrowest shafts
+// here, has a relative error of sqrt(1 / 0.3 - 1) = 1.5.
 const std::vector<Excuse> narrow{as_froxels, {as_noise.kind, 1.5}, sun_unseen};
-// Of shadows much wider than froxels, steps and texels.
+// For shadows much wider than froxels, steps and texels.
 const StressMeasure sharp{0.03, to_truth, nullptr, 1e-3, "march shadow-volume"};
 const StressMeasure fine{-1, to_truth, nullptr, 1e-3, "march shadow-volume"};
-// Half shadows as wide as the gap: up to half of its light lies elsewhere.
+// Penumbrae as wide as the gap: up to half of its light falls elsewhere.
 const std::vector<Excuse> hard{{&limitation::hard_shadows, 0.5}, as_froxels};
 
 Medium dust(float extinction = 0.15f) {
@@ -34,7 +34,7 @@ Medium dust(float extinction = 0.15f) {
 const Light slanting = sun_light({0.5f, -1, 0.1f}, 10);
 const Camera aside = camera_from({0, 0, 7}, vec3(0));
 
-// A roof with a gap that is not in the middle: no ray runs in the face of a shaft.
+// A roof with a gap that is off-center, so that no ray runs along the face of a shaft.
 std::vector<Mesh> roof_with_slit(float width, float height = 2, float middle = 0.137f) {
     const float low = middle - 0.5f * width, high = middle + 0.5f * width;
     return {quad({-20, height, -20}, {20 + low, 0, 0}, {0, 0, 40}),
@@ -57,14 +57,14 @@ StressScene orbit(double azimuth) {
                         {box_of({-0.8f, 0.5f, -0.8f}, {0.8f, 1.2f, 0.8f}, -1)});
 }
 
-// The sun comes from behind the picture, along the middle ray.
+// The sun shines towards the eye, along the middle ray.
 StressScene along_the_sun(double angle) {
     const float a = static_cast<float>(angle) * pi / 180;
     return stress_scene({dust()}, {sun_light({std::sin(a), 0, std::cos(a)}, 10)}, aside,
                         {box_of({-0.5f, -0.4f, -2.5f}, {0.6f, 0.7f, -2}, -1)});
 }
 
-// Wires so placed that no ray runs in the face of a shadow.
+// Wires placed so that no ray runs along the face of a shadow.
 StressScene fence(double wire) {
     std::vector<Mesh> meshes;
     const float w = static_cast<float>(wire);
@@ -73,7 +73,7 @@ StressScene fence(double wire) {
     return stress_scene({dust()}, {slanting}, aside, meshes);
 }
 
-// A square with a square hole: of one mesh, of pieces whose edges do not meet, facing either way or both.
+// A square with a square hole: one mesh, pieces whose edges do not match, or triangles flipped, mixed or doubled.
 enum class Sheet { one, pieces, flipped, mixed, doubled };
 StressScene holed(double kind) {
     Mesh mesh;
@@ -145,7 +145,7 @@ StressScene dark_room(double wall) {
                         camera_from({0.3f, 0.1f, 1.7f}, {0, 0, -2}), room(static_cast<float>(wall)));
 }
 
-// A roof of n x n squares that has no gap.
+// A closed roof of n x n squares.
 StressScene tessellated(double squares) {
     const int n = static_cast<int>(squares);
     Mesh mesh;
@@ -207,7 +207,7 @@ StressScene lamp_in_holes(double distance) {
                         meshes);
 }
 
-// No ray goes anywhere, or nearly.
+// Rays of no length, or nearly none.
 StressScene short_rays(double) { return slit(0.8); }
 double short_rays_off(Trial& trial) {
     const StressScene& scene = trial.scene;

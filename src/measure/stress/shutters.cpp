@@ -1,4 +1,4 @@
-// Lenses, open shutters and objects that hold out.
+// Depth of field, motion blur and matte objects.
 #include "measure/stress/authored.h"
 #include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
@@ -23,7 +23,7 @@ const std::vector<Excuse> excuses{{&limitation::fog_through_middle},  {&limitati
                                   {&limitation::blurred_filter, 0.5}, {&limitation::sampled_gobo, 0.5}};
 
 // --- lenses --------------------------------------------------------------------------------------------------------
-// A spot's beam two metres behind a post.
+// A spot's beam two meters behind a post.
 StressScene through_lens(float radius, float focus) {
     Camera camera = camera_from({0, 0, 4}, vec3(0));
     camera.lens.radius = radius, camera.lens.focus = focus;
@@ -75,7 +75,7 @@ StressScene fast_lamp(double way) {
     return shuttered(std::move(scene), 0, 1);
 }
 
-// A post that passes before a wide beam.
+// A post that moves across a wide beam.
 StressScene fast_post(double way) {
     Scene scene = still_scene();
     const float half = 0.5f * static_cast<float>(way);
@@ -87,7 +87,7 @@ StressScene fast_post(double way) {
     return shuttered(std::move(scene), 0, 1);
 }
 
-// A bar in a wide beam, one end of which a morph target moves.
+// A bar in a wide beam; a morph target moves one of its ends.
 StressScene swinging_bar(double way) {
     Scene scene = still_scene();
     scene.lights[0].inner_cone = 0.5f, scene.lights[0].outer_cone = 0.6f;

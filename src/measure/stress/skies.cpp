@@ -1,4 +1,4 @@
-// Light from all around: half a sky, suns in maps, thick fog, roofs.
+// Environment light: half a sky, suns in maps, thick fog, roofs.
 #include "measure/stress/authored.h"
 #include "modes/area_light_limitations.h"
 #include "modes/limitation.h"
@@ -11,7 +11,7 @@
 
 namespace tyndall {
 namespace {
-// What a few rays have told of the mean; other rays differ.
+// The limitation states an error that it measures on a few rays; other rays differ.
 double stated(const Limitation& limitation) { return 1.5 * limitation.amounts[0] / 100 + 0.02; }
 const std::vector<Excuse> excuses{{&limitation::mean_environment, 0, stated}};
 const Camera front = camera_from({0, 0.3f, 5}, vec3(0));
@@ -28,7 +28,7 @@ std::shared_ptr<const Environment> half_sky() {
     return sky_of(64, [](vec3 direction) { return vec3(direction.y > 0 ? 1 : 0); });
 }
 
-// A disc of `share` of all light in an even sky.
+// A uniform sky with a disc that gives `share` of all light.
 std::shared_ptr<const Environment> sky_with_sun(float radius, float share, int columns) {
     const float edge = std::cos(radius), steradians = 2 * pi * (1 - edge);
     const float sun = share * 4 * pi / steradians;
@@ -49,7 +49,7 @@ StressScene with_contrast(double share) {
     return under(sky_with_sun(0.06f, static_cast<float>(share), 512), ball(0.2f, forward_phase(0.6f)));
 }
 
-// A roof and walls that leave the front open, and a hole above.
+// Walls that leave the front open, and a roof with a hole.
 StressScene under_roof(double hole) {
     const float h = 0.5f * static_cast<float>(hole);
     return under(half_sky(), ball(0.2f), front,
@@ -59,7 +59,7 @@ StressScene under_roof(double hole) {
                   box_of({-1.2f, -1.2f, -1.2f}, {1.2f, 1.2f, -1.1f}, 0)});
 }
 
-// Towards and away from the bright side.
+// Seen towards the bright side and away from it.
 StressScene seen_from(double azimuth) {
     const float a = static_cast<float>(azimuth) * pi / 180;
     const auto sky = sky_of(64, [](vec3 direction) { return vec3(1 + direction.z); });

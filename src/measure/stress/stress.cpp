@@ -12,8 +12,8 @@
 
 namespace tyndall {
 namespace {
-constexpr double small_error = 0.05; // below it a mode is not wrong
-constexpr double degraded_times = 3; // what is allowed, for a mode that says it is degraded
+constexpr double small_error = 0.05; // below it a warning of severity wrong is idle
+constexpr double degraded_times = 3; // factor on the allowed error for a mode that reports severity degraded
 
 std::vector<std::string_view> pieces(std::string_view text, char separator) {
     std::vector<std::string_view> result;
@@ -25,7 +25,7 @@ std::vector<std::string_view> pieces(std::string_view text, char separator) {
     return result;
 }
 
-// Relative RMSE that counts as holding what a mode promises at preview.
+// Largest relative RMSE that keeps a mode's promise at quality preview.
 double promised(const Mode& mode) {
     switch (mode.accuracy) {
     case Accuracy::homogeneous:
@@ -58,7 +58,7 @@ double excused_by(const Limitation& limitation, const StressCase& stress, double
     return most;
 }
 
-// What the mode says of the scene before it renders.
+// The limitations that the mode reports for the scene before it renders.
 void ask_limitations(const StressCase& stress, const Mode& mode, const StressScene& scene, StressPoint& point) {
     View view = scene.view;
     view.has_history = stress.modes.claims == static_cast<uint16_t>(Claim::history);

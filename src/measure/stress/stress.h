@@ -1,6 +1,6 @@
-// The stability suite: the known ways in which fog techniques fail, as tiny scenes with one condition swept from mild
-// to hard, rendered by every mode that claims to handle it. A mode may hold, or say beforehand that it will not; what
-// it must not do is fail in silence.
+// The stress suite: the known ways in which fog techniques fail, as tiny scenes with one condition swept from mild to
+// hard, rendered by every mode that claims to handle it. A mode may hold, or report beforehand that it will not; it
+// must not fail silently.
 #pragma once
 #include "base/math.h"
 
@@ -17,27 +17,27 @@ class LimitationKind;
 struct Limitation;
 struct Mode;
 struct StressScene;
-struct Trial; // both of measure/stress/trial.h
+struct Trial; // both in measure/stress/trial.h
 
 // How an error is measured, and how large it may be.
 struct StressMeasure {
     double allowed = -1; // below 0: what the mode promises at preview
     std::string_view criterion = "relative RMSE of image or fog light against the exact march";
     double (*error)(Trial& trial) = nullptr; // null = by the criterion above
-    double exact = -1;                       // what is allowed to modes that are exact here
-    std::string_view exact_modes{};          // names between spaces
-    double allowed_bias = infinity;          // of the mean of the fog's light, as a share
+    double exact = -1;                       // allowed to modes that are exact here
+    std::string_view exact_modes{};          // names separated by spaces
+    double allowed_bias = infinity;          // of the mean fog light, relative
 };
 
 // A limitation that may excuse an error. `wrong` excuses any. `degraded` says that the image is coarse, not that it is
-// another one: it excuses three times what is allowed, or what the limitation amounts to in the case.
+// wrong: it excuses three times the allowed error or `up_to`, whichever is larger; with `amount`, that instead.
 struct Excuse {
     const LimitationKind* kind;
     double up_to = 0;
-    double (*amount)(const Limitation&) = nullptr; // the error that it states, which is then the most it excuses
+    double (*amount)(const Limitation&) = nullptr; // the error that the limitation states
 };
 
-// What the rows of techniques say of them. All but `all`, `along_rays`, `history` and `fluence` are of physical ones.
+// What modes claim in their table. All but `all`, `along_rays`, `history` and `fluence` imply a physical mode.
 enum class Claim : uint16_t {
     all = 0,
     along_rays = 1,
@@ -51,8 +51,8 @@ enum class Claim : uint16_t {
     adaptive = 256
 };
 
-// The techniques that a case is for: those that make all these claims, or one by its name. By itself: a part of the
-// program that all modes share.
+// The modes that a case is for: those that make all these claims, or one by its name. Empty: the case tests a part of
+// the program that all modes share.
 struct Participants {
     std::optional<uint16_t> claims{};
     std::string_view name{};
@@ -67,7 +67,7 @@ constexpr Participants operator|(Claim a, Claim b) {
 }
 
 struct StressCase {
-    std::string_view id, group, title; // title: what is put to the test
+    std::string_view id, group, title; // title: what is tested
     std::string_view sweep, unit;      // the condition that is swept
     std::vector<double> values;        // from mild to hard
     Participants modes;
@@ -79,7 +79,7 @@ struct StressCase {
 // All cases, group by group.
 const std::vector<StressCase>& stress_cases();
 
-// Whether the case is one for the mode.
+// Whether the mode takes part in the case.
 bool takes_part(const StressCase& stress, const Mode& mode);
 
 enum class Verdict { holds, degrades, fails };
@@ -87,13 +87,13 @@ enum class Verdict { holds, degrades, fails };
 struct StressPoint {
     double value = 0;
     double error = 0, allowed = 0;
-    double bias = -1, allowed_bias = infinity; // of the mean of the fog's light, as a share; below 0: not measured
-    double measured = -1;                      // relative RMSE where the mode called itself wrong; else -1
-    bool wrong = false;                        // some limitation says so
+    double bias = -1, allowed_bias = infinity; // of the mean fog light, relative; below 0: not measured
+    double measured = -1;                      // relative RMSE if `wrong`; else -1
+    bool wrong = false;                        // a limitation has severity wrong
     std::string warning;                       // the limitation that excuses most, as a line; empty = none
-    double excused_up_to = -1;                 // the largest error that is excused; below 0 without one
-    uint64_t non_finite = 0, negative = 0; // samples dropped and values that are no number; values below 0, or shares
-                                           // above 1; of the truth as well
+    double excused_up_to = -1;                 // the largest error that is excused; below 0: none
+    uint64_t non_finite = 0, negative = 0; // dropped samples and non-finite values; values below 0, or shares above 1;
+                                           // those of the ground truth included
 
     bool said() const { return excused_up_to >= 0; }
     bool clean() const { return non_finite == 0 && negative == 0; }
@@ -112,12 +112,12 @@ struct StressResult {
     const StressPoint* first() const; // the point that decides the verdict; null when it holds
 };
 
-// Runs a case with those of the modes that it names; the program's own when there is one. Throws Error (internal) when
-// cancelled.
+// Runs a case with those of the modes that take part, or once for a case of the whole program. Throws Error (internal)
+// when cancelled.
 std::vector<StressResult> run_stress(const StressCase& stress, std::span<const Mode> modes,
                                      std::atomic<bool>* cancel = nullptr);
 
-// How often a mode called itself `wrong`, and how often its measured error was below 5 % then.
+// How many points have a limitation of severity wrong, and at how many of them (idle) the error is below 5 %.
 struct WrongWarnings {
     int count = 0, idle = 0;
 };

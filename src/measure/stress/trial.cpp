@@ -1,4 +1,4 @@
-// Renders the tiny scenes of the stability suite, counts what is no light, and measures.
+// Renders the tiny scenes of the stress suite, counts invalid values, and measures errors.
 #include "measure/stress/trial.h"
 #include "modes/froxel/settings.h"
 
@@ -17,7 +17,7 @@
 
 namespace tyndall {
 namespace {
-// Per pixel, of a mode whose error is noise; and of one where light that is authored is sampled by chance.
+// Samples per pixel if noise is the only error; fewer in error_and_bias().
 constexpr int max_samples = 1024, max_authored = 256;
 
 uint64_t negative_in(const Image<vec3>& image) {
@@ -25,7 +25,7 @@ uint64_t negative_in(const Image<vec3>& image) {
         image.pixels, [](vec3 value) { return std::min(value.x, std::min(value.y, value.z)) < 0; }));
 }
 
-// Values that no share of light can have.
+// Values that are not between 0 and 1.
 uint64_t no_share_in(const Image<float>& image) {
     constexpr float rounding = 1e-5f;
     return static_cast<uint64_t>(
@@ -36,10 +36,10 @@ uint64_t non_finite_in(const Image<vec3>& image) {
     return static_cast<uint64_t>(std::ranges::count_if(image.pixels, [](vec3 value) { return !is_finite(value); }));
 }
 
-// Whether every picture of the scene is of samples taken by chance: where on the lens, when within the shutter.
+// Whether every image of the scene is randomly sampled, over the lens or within the shutter interval.
 bool is_blurred(const StressScene& scene) { return scene.view.camera.lens || scene.view.shutter; }
 
-// Whether there is light in fog that marches sample by paths.
+// Whether the scene has light that a march samples randomly: environment, emissive surfaces, area lights or fire.
 bool has_sampled_light(const Snapshot& snapshot) {
     const bool glowing = snapshot.scene && std::ranges::any_of(snapshot.scene->materials, [](const Material& material) {
                              return max_component(material.emission) > 0;
@@ -49,8 +49,8 @@ bool has_sampled_light(const Snapshot& snapshot) {
            std::ranges::any_of(snapshot.media, [](const Medium& medium) { return only_emits(medium.optics); });
 }
 
-// Whether all that is wrong with a picture is noise, of which its variance tells: a march looks at soft lights by
-// chance, as paths do, and several techniques at gobos.
+// Whether an image's only error is noise: a march samples soft lights randomly, as path tracing does, and several modes
+// sample gobos randomly.
 bool is_noise(const Trial& trial) {
     const Snapshot& snapshot = trial.scene.snapshot;
     const bool shadows = snapshot.occluders && !snapshot.occluders->empty();
@@ -61,7 +61,7 @@ bool is_noise(const Trial& trial) {
     return std::ranges::any_of(said, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
 }
 
-// Depths that are none; infinite ones are those of the background.
+// Depths that are negative or NaN; infinite ones are those of the background.
 uint64_t no_depth_in(const Image<float>& depth) {
     return static_cast<uint64_t>(std::ranges::count_if(depth.pixels, [](float value) { return !(value >= 0); }));
 }
@@ -74,7 +74,8 @@ void count_faults(const Layers& layers, const FrameStats& stats, Faults& faults)
         faults.non_finite += non_finite_in(light), faults.negative += negative_in(light);
 }
 
-// Squared bias that two independent pictures show, and two standard errors of it; both in squares of the truth's mean.
+// Squared bias estimated from two independent images, and two standard errors of it; both relative to the squared mean
+// of the ground truth.
 struct Bias {
     double squared = 0, doubt = 0;
 };
@@ -84,8 +85,7 @@ Bias bias_of(const Image<vec3>& a, const Image<vec3>& b, const Image<vec3>& trut
     return {relative(squared.value, unit), relative(2 * squared.standard_error, unit)};
 }
 
-// How far the mean of two pictures is off that of two others, less two standard errors of what differs within the
-// pairs.
+// Relative difference between the means of two pairs of images, less two standard errors estimated within the pairs.
 double bias_of_means(const Image<vec3>& a, const Image<vec3>& b, const Image<vec3>& truth, const Image<vec3>& again) {
     const auto spread = [](const Image<vec3>& one, const Image<vec3>& other) {
         double squares = 0;
@@ -100,8 +100,8 @@ double bias_of_means(const Image<vec3>& a, const Image<vec3>& b, const Image<vec
     return relative(std::max(0.0, std::abs(found - right) - doubt), right);
 }
 
-// The bias that is beyond doubt, from enough samples that one as large as is allowed would be. Where even the most
-// samples are too few, the largest that there may be; of what is authored that which is beyond doubt all the same.
+// A lower bound of the bias, from enough samples to show a bias as large as the allowed error. If max_taken samples are
+// too few for that, an upper bound, or the lower bound all the same unless `doubted`.
 double bias_to_truth(Trial& trial, int max_taken = max_samples, bool doubted = true) {
     const Layers &truth = trial.truth(), &other = trial.other_truth();
     StressScene again = trial.scene;
@@ -119,12 +119,12 @@ double bias_to_truth(Trial& trial, int max_taken = max_samples, bool doubted = t
         }
         if (doubt <= allowed || least > allowed) return std::sqrt(least);
         if (trial.noisy_samples >= max_taken) return std::sqrt(doubted ? most : least);
-        // The doubt about the product of two errors that are noise falls with the samples.
+        // The standard error of the product of two noise errors is inversely proportional to the sample count.
         while (2 * trial.noisy_samples < max_taken && doubt > 2 * allowed) doubt /= 2, trial.noisy_samples *= 2;
     }
 }
 
-// The same of the mean of the fog's light.
+// The same for the mean fog light.
 double bias_of_mean(Trial& trial) {
     constexpr int pictures = 8;
     const double truth = mean_of(trial.truth().inscatter);
@@ -169,7 +169,7 @@ Layers Trial::truth_of_scene(const StressScene& what) {
 }
 
 namespace {
-// A march at final quality, its light followed through the fog, of so many samples by other random numbers.
+// A march at quality final with marched light transmittance, at the given samples per pixel and seed.
 Layers sampled_truth(Trial& trial, int samples, uint32_t seed) {
     const StressScene& what = trial.scene.finer ? *trial.scene.finer : trial.scene;
     Settings settings = what.settings;
@@ -186,8 +186,8 @@ Layers sampled_truth(Trial& trial, int samples, uint32_t seed) {
     return layers;
 }
 
-// Two pictures, of as many samples as bring their noise near what is asked of techniques: the product of the errors
-// against both is free of it.
+// Two images with enough samples to bring their noise near the error allowed to modes: the product of the errors
+// against both is unbiased by it.
 Truth sampled_truths(Trial& trial) {
     constexpr double noise = 0.15;
     for (int samples = 64;; samples *= 2) {

@@ -1,4 +1,4 @@
-// One mode at one value of a case, and what cases are made of. Internal to stress.
+// One mode at one value of a case, and the parts that cases are made of. Internal to stress.
 #pragma once
 #include "measure/stress/stress.h"
 #include "measure/verify/rays.h"
@@ -20,9 +20,9 @@ struct StressScene {
     Snapshot snapshot;
     View view;
     Settings settings;
-    std::shared_ptr<const StressScene> finer{}; // what the truth is rendered of, where it is not this: more moments
+    std::shared_ptr<const StressScene> finer{}; // scene of the ground truth if it is not this one: more moments
 };
-// What no picture may hold.
+// Values that no image may have.
 struct Faults {
     uint64_t non_finite = 0, negative = 0;
 };
@@ -30,7 +30,7 @@ struct Faults {
 struct Truth {
     Layers layers;
     Faults faults;
-    std::optional<Layers> again{}; // as good, by other random numbers, where they decide what it shows
+    std::optional<Layers> again{}; // the same with another seed, if it is random
 };
 
 struct Trial {
@@ -39,39 +39,39 @@ struct Trial {
     const StressScene& scene;
     std::optional<Truth>& known_truth; // of the scene, shared by the modes
     std::atomic<bool>* cancel = nullptr;
-    Faults faults{};        // of everything rendered but the shared truth
-    double bias = -1;       // of the mean of the fog's light, as a share, where it is measured
+    Faults faults{};        // of everything rendered but the shared ground truth
+    double bias = -1;       // of the mean fog light, relative; below 0: not measured
     int noisy_samples = 16; // per pixel, of a mode whose error is noise
 
     Layers render(const StressScene& what, History* history = nullptr, bool parts = false);
     Layers render() { return render(scene); }
-    Layers truth_of_scene(const StressScene& what); // exact single scattering, at pixel centres
+    Layers truth_of_scene(const StressScene& what); // exact single scattering, at pixel centers
     const Layers& truth();
-    const Layers& other_truth(); // the same picture where chance has no part in it
+    const Layers& other_truth(); // with another seed; the same image if nothing is random
 };
 
 // --- errors ------------------------------------------------------------------------------------------------------
-// E: the relative RMSE of picture or fog light, whichever is worse.
+// E: the relative RMSE of image or fog light, whichever is worse.
 double difference(const Layers& test, const Layers& reference);
 double difference(const Image<vec3>& test, const Image<vec3>& reference);
-// Of the trial's mode against the truth, grain included. Where noise is the only error there is: what noise does not
-// explain, from so many samples that a bias as large as is allowed shows.
+// Error of the trial's mode against the ground truth, grain included. If noise is the only error: the part that noise
+// does not explain, from enough samples to show a bias as large as the allowed error.
 double error_to_truth(Trial& trial);
-double error_of_mean(Trial& trial); // of the fog light; where noise is the only error, as above
-// The error, and beside it the bias of the mean of the fog's light, neither with the truth's own noise.
+double error_of_mean(Trial& trial); // of the fog light; if noise is the only error, as above
+// The error; trial.bias gets the bias of the mean fog light. Both are unbiased by the ground truth's noise.
 double error_and_bias(Trial& trial);
-double leak(Trial& trial); // the fog's mean light, by that of the same fog without surfaces
+double leak(Trial& trial); // mean fog light relative to that of the same fog without surfaces
 inline constexpr std::string_view to_truth = StressMeasure{}.criterion;
 double mean_of(const Image<vec3>& image);
 double max_of(const Image<vec3>& image);
 
 // --- scenes ------------------------------------------------------------------------------------------------------
-constexpr ivec2 stress_size{49, 27}; // odd: the middle ray looks where the camera does
+constexpr ivec2 stress_size{49, 27}; // odd, so that the middle ray is the view direction
 
 Camera camera_from(vec3 position, vec3 target, float vertical_fov = 0.7f);
 Camera flat_camera(vec3 position, vec3 target, float height); // orthographic
 
-// At preview, one ray through each pixel's centre, froxels as wide as a pixel.
+// A scene at quality preview: one ray through each pixel center, froxels as wide as a pixel.
 StressScene stress_scene(std::vector<Medium> media, std::vector<Light> lights, Camera camera,
                          std::vector<Mesh> meshes = {}, std::vector<Material> materials = {});
 

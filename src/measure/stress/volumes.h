@@ -1,10 +1,10 @@
-// Small grids that cases are made of. Internal to stress.
+// Small grids used by cases. Internal to stress.
 #pragma once
 #include "measure/stress/trial.h"
 #include "scene/light.h"
 
 namespace tyndall {
-// Of fog in the unit box, in the sun.
+// A view of fog in the unit box, lit by the sun.
 StressScene looking_at(Medium medium);
 
 float blob(vec3 p);

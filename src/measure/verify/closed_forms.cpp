@@ -37,7 +37,7 @@ void check_phase(Checks& checks) {
                    phase_value(forward_phase(row.g), row.cosine), row.value, 2e-5 * row.value, "rounding");
 }
 
-// Lobes and tables: their sums over the sphere and their mean cosines.
+// Lobes and tables: their integrals over the sphere and their mean cosines.
 void check_phase_shapes(Checks& checks) {
     const auto moment = [](const Phase& phase, int power) { // cosine = 1 - 2 u⁴ resolves narrow lobes
         return integral(
@@ -107,7 +107,8 @@ void check_emission(Checks& checks) {
     checks.add("glowing fog, path", light.value.x, expected, 3 * light.error.x, "3 standard errors");
 }
 
-// Reflection and transmission of a slab, isotropic: factor = w/4 · ... (Chandrasekhar 1960); radiance = factor·μ0·E/π.
+// Isotropic single scattering of a slab (Chandrasekhar 1960), times μ0·E/π: reflected w/4 · (1 − e^(−τ/μ−τ/μ0)) /
+// (μ + μ0), transmitted w/4 · (e^(−τ/μ) − e^(−τ/μ0)) / (μ − μ0).
 void check_slab(Checks& checks) {
     const struct {
         const char* name;

@@ -1,4 +1,4 @@
-// Checks that need no expected value: what must not change when the same fog or scene is said in another way.
+// Checks that need no expected value: what must not change when the same fog or scene is described in another way.
 #include "measure/verify/rays.h"
 #include "scene/light_kind.h"
 #include "scene/mesh.h"
@@ -19,7 +19,7 @@ float rough(ivec3 cell) {
     return to_unit(hash(static_cast<uint32_t>(cell.x), static_cast<uint32_t>(cell.y), static_cast<uint32_t>(cell.z)));
 }
 
-// The same, trilinear between voxel centres.
+// The same, interpolated trilinearly between voxel centers.
 float interpolated(vec3 p) {
     const vec3 at = p * 8.0f - 0.5f, corner = glm::floor(at), share = at - corner;
     float sum = 0;
@@ -32,12 +32,12 @@ float interpolated(vec3 p) {
 }
 
 void check_grids(Checks& checks) {
-    // Along an axis every voxel centre counts for one voxel, the fading ends included.
+    // Along an axis every voxel center counts for one voxel, the fading ends included.
     const Medium full = grid_medium(3, 64, [](vec3) { return 0.5f; });
     const Ray across{{-1, 0.5f, 0.5f}, {1, 0, 0}, 3};
     checks.add("optical depth of a grid of one value", optical_depth(full, across), 1.5, 1e-6, "rounding");
 
-    // Inside, light meets the same fog as in an even medium.
+    // Inside, the fog is the same as in a homogeneous medium.
     const Medium even = homogeneous_medium(1.5f, {vec3(0), vec3(1)});
     const Ray inside{{0.5f, 0.5f, 0.9f}, {0, 0, -1}, 0.8f};
     const Light sun = sun_light({0.2f, -1, 0.1f}, 1);
@@ -45,7 +45,7 @@ void check_grids(Checks& checks) {
     checks.add("light in a grid of one value, and in homogeneous fog",
                reference_light(snapshot_of({full}, {sun}), inside).radiance.x, expected, 1e-4 * expected, "1e-4");
 
-    // Three times as fine, voxel centres and the cubes between them stay where they are.
+    // At three times the resolution, voxel centers and the cubes between them stay where they are.
     const Medium coarse = grid_medium(3, 8, [](vec3 p) { return rough(ivec3(p * 8.0f)); });
     const Medium fine = grid_medium(3, 24, interpolated);
     double worst = 0;

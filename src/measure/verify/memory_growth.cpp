@@ -1,4 +1,4 @@
-// Linux's counters of a process's own pages: proc(5), clear_refs and status.
+// Reads Linux's counters of a process's pages: proc(5), clear_refs and status.
 #include "measure/verify/memory_growth.h"
 
 #include <malloc.h>
@@ -18,7 +18,7 @@ std::optional<double> own_pages(const std::string& name) {
     return {};
 }
 
-// Lowers the highest point to what is resident now.
+// Resets the peak of the resident memory to its current size.
 bool reset_peak() {
     std::ofstream file("/proc/self/clear_refs");
     file << "5" << std::flush;

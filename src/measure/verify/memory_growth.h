@@ -1,13 +1,13 @@
-// How much memory a piece of work takes on top of what is there.
+// Measures how much memory a piece of work takes.
 #pragma once
 #include <optional>
 
 namespace tyndall {
-// Counts from its making on. Memory that was free but not given back to the system before counts as taken already.
+// Counts from construction on. Memory that was free then, but not returned to the system, counts as taken already.
 class MemoryGrowth {
 public:
     MemoryGrowth();
-    // Bytes between then and the highest point since; nothing where the system does not tell.
+    // Peak growth of the resident memory since construction, bytes; nullopt where the system does not report it.
     std::optional<double> peak() const;
 
 private:

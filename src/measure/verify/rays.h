@@ -1,4 +1,4 @@
-// Scenes without files and light along single rays, for checks. Internal to verify.
+// Scenes made in memory and light along single rays, for checks. Internal to verify and stress.
 #pragma once
 #include "base/gauss_legendre.h"
 #include "integrate/ray_estimate.h"
@@ -7,19 +7,19 @@
 #include "trace/small_scenes.h"
 
 namespace tyndall {
-// A list of checks under way.
+// The checks made so far.
 struct Checks {
     std::vector<Check> list;
     std::string topic;
     std::function<void(double)> progress; // 0..1 of the current group; may be empty
-    uint64_t non_finite = 0;              // samples of pictures rendered so far
+    uint64_t non_finite = 0;              // samples of images rendered so far
 
     void add(std::string name, double measured, double expected, double tolerance, std::string basis);
 };
 
 struct CheckGroup {
     const char* topic;
-    double share; // of the whole time, about
+    double share; // of the whole time, approximately
     std::function<void(Checks&)> run;
 };
 std::vector<CheckGroup> closed_form_checks();

@@ -1,4 +1,4 @@
-// Lengths, and what is measured per length, multiplied throughout a scene.
+// Scales lengths, and quantities per length, throughout a scene.
 #include "measure/verify/scaled_scene.h"
 
 namespace tyndall {

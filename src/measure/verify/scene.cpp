@@ -1,5 +1,5 @@
-// Invariances of whole pictures: threads, crops, units of length, sums of lights, a furnace, and two methods that
-// share hardly any code on the way of the light.
+// Invariances of whole images: threads, crops, units of length, sums of lights, a white furnace, and two methods whose
+// light transport shares hardly any code.
 #include "measure/metrics/metrics.h"
 #include "measure/metrics/tile_scores.h"
 #include "measure/verify/rays.h"
@@ -18,7 +18,7 @@
 
 namespace tyndall {
 namespace {
-// A picture of a scene at the moment of the proof.
+// What an image of a scene is rendered with, at the proof's frame.
 struct Shot {
     const SceneProof& proof;
     const VerifyControl& control;
@@ -53,7 +53,7 @@ Snapshot moment(const Scene& scene, const SceneProof& proof) {
     return make_snapshot(scene, moment_of(scene, proof.frame), nullptr, MissingFrame::error);
 }
 
-// Pixels whose colour, fog light or transmittance differ in any bit; `offset`: where `part` lies in `whole`.
+// Number of pixels whose color, fog light or transmittance differ in any bit; `offset`: where `part` is in `whole`.
 int different_pixels(const Layers& part, const Layers& whole, ivec2 offset) {
     int count = 0;
     for (int y = 0; y < part.size.y; ++y)
@@ -96,8 +96,8 @@ void check_scale(const Scene& scene, const SceneProof& proof, const VerifyContro
     }
 }
 
-// The scene as single scattering of its lights and environment: without light that modes treat differently, and without
-// background.
+// The scene lit by its lights and environment alone: without ambient light and emission, which modes treat differently,
+// and without background.
 Scene only_lights(Scene scene) {
     scene.ambient = Keyed<vec3>(vec3(0));
     scene.background = {};
@@ -125,8 +125,8 @@ void check_lights(const Scene& scene, const SceneProof& proof, const VerifyContr
                "rounding");
 }
 
-// The scene's fog, made white and thinned where it is too thick for light to find its way out, alone in even
-// surroundings of radiance 1. Light never leaves white fog without bounds.
+// The scene's fog alone in uniform surroundings of radiance 1, made white, and thinned where it is too thick for paths
+// to escape. Skipped for fog without bounds, which light never leaves if it is white.
 void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
     Scene fog = only_lights(scene);
     fog.instances.clear(), fog.lights.clear(), fog.environment.reset();
@@ -156,12 +156,13 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
     const Snapshot snapshot = moment(lit, proof);
     Shot exact{proof, control, checks, settings_for(Quality::reference)};
     exact.settings.pixel.filter = PixelFilter::center;
-    // Points on soft lights and of an environment are all that is random in it: batches of them tell how far their mean
-    // is to be trusted.
+    // Only points on soft lights and in an environment are random in the reference: batches of them give the variance
+    // of its mean.
     const bool soft = snapshot.environment || std::ranges::any_of(snapshot.lights, is_soft);
     exact.settings.pixel.samples = exact.batches = soft ? 8 : 1;
-    // Where there is noise anyway, grids and alpha before the lights are followed from some nodes of each ray only. Of
-    // foliage in mist a look at the sun from all of them takes a hundredth of a second, and there are millions.
+    // Where there is noise anyway, light is marched through grids and alpha from some nodes of each ray only: in
+    // foliage and mist, marching to the sun from all of them takes a hundredth of a second, and there are millions of
+    // rays.
     const int points = has_alpha_shadows(snapshot) ? 2 : 16;
     exact.settings.terms.light_points = soft ? points : 1, exact.settings.march.light_marches = soft ? 32 : 0;
     const auto part = [&](double from, double to) {
@@ -182,8 +183,8 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
     checks.add("score of all dark tiles together", scores.dark, 0, 4, "4 standard errors");
     if (scores.scores == 0) return;
 
-    // The mean of n scores varies by 1/√n, their deviation by 1/√(2n), and 0.27 % of them lie beyond 3. The channels of
-    // a tile share their random numbers: together they count as one.
+    // The standard error of the mean of n scores is 1/√n, that of their standard deviation 1/√(2n), and 0.27 % of them
+    // lie beyond 3. The channels of a tile share their random numbers: together they count as one.
     const double n = (scores.scores + 2) / 3;
     checks.add("mean score of " + std::to_string((scores.scores + 2) / 3) + " lit tiles, " +
                    std::to_string(static_cast<int>(100 * scores.precise)) + " % known to 1 %",

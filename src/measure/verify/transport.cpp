@@ -1,4 +1,4 @@
-// Checks of light that scatters many times: conservation of energy and published tables.
+// Checks of multiple scattering: conservation of energy and published tables.
 #include "measure/verify/rays.h"
 #include "scene/light.h"
 #include "scene/mesh.h"
@@ -34,7 +34,7 @@ void check_furnace(Checks& checks) {
     snapshot.background.color = vec3(1);
     add(checks, "the same with a white box in it", path_light(snapshot, ray, 4096), 1);
 
-    // Walls that glow with 1 - base colour.
+    // Walls that emit 1 - base color.
     Scene oven;
     oven.materials = {lambert(vec3(0.6f), vec3(0.4f))};
     oven.meshes = {box_of(vec3(-1), vec3(2), 0)}, oven.instances = {{-1, 0}};
@@ -43,8 +43,8 @@ void check_furnace(Checks& checks) {
     add(checks, "rough fog in a glowing oven", path_light(closed, {{0.4f, 0.4f, 1.5f}, {0, 0, -1}}, 4096), 1);
 }
 
-// Share of a perpendicular beam that a slab returns or lets through, as the radiance seen along the perpendicular in
-// light from one side only (reciprocity). A black floor keeps the light from below away.
+// Share of a perpendicular beam that a slab reflects or transmits, measured by reciprocity as the radiance along the
+// perpendicular in uniform light from one side. A black floor blocks light from below.
 void check_slabs(Checks& checks) {
     const struct {
         const char* source;
@@ -70,7 +70,7 @@ void check_slabs(Checks& checks) {
     }
 }
 
-// Van de Hulst 1980, table 12: isotropic, albedo .8, depth 2, seen under cosine ½ by cosine of the sun.
+// Van de Hulst 1980, table 12: isotropic, albedo .8, depth 2, seen at cosine ½, over the cosine of the sun.
 void check_radiance(Checks& checks) {
     const struct {
         const char* name;
@@ -92,7 +92,7 @@ void check_radiance(Checks& checks) {
 }
 
 void check_surfaces(Checks& checks) {
-    // Two large plates facing each other: the upper glows with 1 and reflects .4, the lower reflects .5.
+    // Two large plates facing each other: the upper emits 1 and reflects .4, the lower reflects .5.
     Scene plates;
     plates.materials = {lambert(vec3(0.5f)), lambert(vec3(0.4f), vec3(1))};
     plates.meshes = {floor_of(0, 3000, 0), floor_of(1, 3000, 1)}, plates.instances = {{-1, 0}, {-1, 1}};

@@ -1,5 +1,4 @@
-// Proof that this program computes what it says: closed forms, published values, conservation laws and invariances,
-// measured by the code that renders.
+// Verifies the program with the code that renders: closed forms, published values, conservation laws and invariances.
 #pragma once
 #include "base/math.h"
 
@@ -11,11 +10,11 @@
 namespace tyndall {
 struct Scene;
 
-// One statement: `measured` lies within `tolerance` of `expected`.
+// One check: `measured` lies within `tolerance` of `expected`.
 struct Check {
     std::string topic, name;
     double measured = 0, expected = 0, tolerance = 0;
-    std::string basis; // what the tolerance is: "rounding", "3 standard errors", ...
+    std::string basis; // of the tolerance: "rounding", "3 standard errors", ...
 
     bool holds() const;
 };
@@ -25,7 +24,7 @@ struct VerifyControl {
     std::function<void(double)> progress; // 0..1
 };
 
-// The program on its own: about a minute on two cores. Throws Error (internal) when cancelled.
+// Verifies the program by itself, in about a minute on two cores. Throws Error (internal) when cancelled.
 std::vector<Check> verify_program(const VerifyControl& control);
 
 struct SceneProof {
@@ -36,7 +35,7 @@ struct SceneProof {
     uint32_t seed = 0;
 };
 
-// The invariances on a user's scene that has fog, and the path tracer's first order against the deterministic
+// Verifies a user's scene that has fog: invariances, and the path tracer's first order against the deterministic
 // reference. Throws Error.
 std::vector<Check> verify_scene(const Scene& scene, const SceneProof& proof, const VerifyControl& control);
 }
