@@ -22,7 +22,7 @@
 
 namespace tyndall {
 namespace {
-// Lumens that a medium sends out to all sides: 4π of its luminance per metre over its volume.
+// Luminous flux of an emissive medium, lumens: 4π times its luminance per meter, integrated over its volume.
 double lumens_of(const Medium& medium) {
     const double per_volume = 4 * double(pi) * luminance(medium.optics.emission.radiance);
     const vec3 size = medium.world_bounds.size();
@@ -41,7 +41,7 @@ template<class Visit> void for_emitting_materials(const Snapshot& snapshot, cons
         if (max_component(material.emission) > 0) visit(material);
 }
 
-// Whether there is something that light could fall on.
+// Whether the scene has surfaces or scattering fog for light to fall on.
 bool can_be_lit(const Snapshot& snapshot) {
     return (snapshot.occluders && !snapshot.occluders->empty()) || std::ranges::any_of(snapshot.media, scatters_light);
 }
@@ -62,13 +62,13 @@ void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& li
 }
 
 namespace {
-// Luminance of the environment's light in fog, where there is some to light; else 0.
+// Mean luminance of the environment in fog, nits; 0 if there is no environment or no scattering fog.
 double nits_in_fog(const Snapshot& snapshot) {
     if (!snapshot.environment || !std::ranges::any_of(snapshot.media, scatters_light)) return 0;
     return double(luminance(snapshot.environment->mean())) * snapshot.environment->volume_scale;
 }
 
-// What fog scatters of the environment's light, as a march finds it, by so many ways for each ray.
+// Environment light scattered by fog, as in a march with 16 light samples per ray.
 ScatterFunction scattered_sky(const View& view, const Snapshot& snapshot) {
     TermSettings terms;
     terms.light_points = 16;
@@ -79,7 +79,7 @@ ScatterFunction scattered_sky(const View& view, const Snapshot& snapshot) {
                             [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); });
 }
 
-// The same as its mean from all around that nothing dims: of the light that fog keeps from a ray, what it scatters.
+// The same for the environment's mean radiance, unattenuated: opacity of the ray times mean albedo along it.
 double scattered_mean(const Snapshot& snapshot, const Ray& ray) {
     constexpr int points = 16;
     double scattered = 0, dimmed = 0;
@@ -93,7 +93,7 @@ double scattered_mean(const Snapshot& snapshot, const Ray& ray) {
     return share * luminance(snapshot.environment->mean()) * snapshot.environment->volume_scale;
 }
 
-// How far the mean is off, as E has it: over 8×6 rays of the picture, up to its surfaces.
+// Relative RMS error of the mean (rmse_rel), over 8×6 camera rays up to the first surface.
 double off_by_mean(const View& view, const Snapshot& snapshot) {
     constexpr int across = 8, down = 6;
     const ScatterFunction exact = scattered_sky(view, snapshot);
@@ -135,7 +135,7 @@ void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations
 }
 
 namespace {
-// The share of the picture's height that a ball takes; 0 where none of it is in the picture.
+// Fraction of the image's height that a sphere covers; 0 where none of it is in the image.
 double share_of_picture(const View& view, vec3 center, double radius) {
     const Camera& camera = view.camera;
     const double depth = glm::dot(center - camera.position, camera.forward);
@@ -149,7 +149,7 @@ double share_of_picture(const View& view, vec3 center, double radius) {
     return glm::length(beyond) < 0.5 * share * view.size.y ? std::min(share, 1.0) : 0;
 }
 
-// Whether light hardly gets beyond a distance from a place: by the fog on six ways.
+// Whether fog attenuates light strongly within a distance of a point: mean optical depth along six axis-aligned rays.
 bool ends_within(const Snapshot& snapshot, vec3 center, double distance) {
     constexpr double deep = 0.3; // optical depths
     double depth = 0;
@@ -162,7 +162,8 @@ bool ends_within(const Snapshot& snapshot, vec3 center, double distance) {
     return depth > deep;
 }
 
-// Of a lamp that is off within a distance: `wrong` where that is where its light is, or much of the picture's height.
+// Severity for a lamp that is inaccurate within `distance`: `wrong` where fog scatters much of its light there, or
+// where that sphere covers much of the image's height.
 Severity severity_within(const View& view, const Snapshot& snapshot, vec3 lamp, double distance) {
     constexpr double much = 0.2;
     const bool wrong = share_of_picture(view, lamp, distance) > much || ends_within(snapshot, lamp, distance);

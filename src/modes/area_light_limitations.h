@@ -1,4 +1,4 @@
-// Limitations of light that comes from more than a point: skies, faces, fire and surfaces that emit.
+// Limitations for light from more than a point: environments, area lights, fire and emissive surfaces.
 #pragma once
 #include "modes/limitation.h"
 
@@ -31,29 +31,29 @@ inline constexpr LimitationKind emission_lights_no_fog{
 inline constexpr LimitationKind emission_left_out{"emission_left_out", "its light is left out: {} lumens"};
 }
 
-// What Rec.709 cannot show of the light of fog, and with `lights_nothing` how much of it lights nothing because it
-// comes from no grid.
+// Reports emission of media outside the Rec.709 gamut and, with `lights_nothing`, emission without a grid, which is
+// visible but illuminates nothing.
 void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations);
 
-// Where lamps stand for glowing fog. `wrong` where most of their light is scattered in the fog that they are off in.
+// Reports fire approximated by lamps. `wrong` where fog scatters much of their light within the distance at which they
+// are inaccurate.
 void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations);
 
-// Where lamps stand for surfaces that emit; `wrong` as of faces.
+// Reports emissive surfaces approximated by lamps; `wrong` as in add_lamps_for_faces().
 void add_lamps_for_surfaces(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
-// Where the fog has the environment's light as its mean, or none of it. How far the mean is off is measured on a few
-// rays.
+// Report an environment whose light in fog is reduced to its mean (error measured on a few rays), or left out.
 void add_mean_environment(const View& view, const Snapshot& snapshot, Limitations& limitations);
 void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations);
 
-// Where lamps stand for the faces of rectangles, discs and spheres. `wrong` also where that fog takes much of the
-// picture.
+// Reports area lights (rectangles, disks, spheres) approximated by lamps. `wrong` where fog scatters much of their
+// light within the distance at which they are inaccurate, or where that region covers much of the image.
 void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
-// Materials whose emission lights nothing; and those for which it does so in the fog alone.
+// Report materials whose emission illuminates nothing, and those whose emission illuminates surfaces but not fog.
 void add_dark_emission(const Snapshot& snapshot, Limitations& limitations);
 void add_unscattered_surfaces(const Snapshot& snapshot, Limitations& limitations);
 
-// Where the light of fog is not drawn at all.
+// Reports media whose emission is not rendered at all.
 void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations);
 }

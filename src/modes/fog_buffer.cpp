@@ -1,4 +1,4 @@
-// Computing fog for a picture, and looking rays up in it.
+// Computes a FogBuffer, and interpolates rays from it.
 #include "modes/fog_buffer.h"
 #include "modes/resolution.h"
 
@@ -15,9 +15,9 @@
 namespace tyndall {
 namespace {
 constexpr int tile_side = 4;
-constexpr uint32_t use_id = 0xf09u; // tells these random numbers from others
+constexpr uint32_t use_id = 0xf09u; // decorrelates these random numbers from other uses
 
-// Rays put together to be computed.
+// A batch of rays to evaluate.
 struct Asked {
     size_t count = 0;
     Ray rays[16];
@@ -38,7 +38,7 @@ struct Asked {
     }
 };
 
-// From the eye to the first surface, or to the end of the fog.
+// Sets each ray's end: the first surface, or the end of the fog.
 void find_lengths(const Snapshot& snapshot, const Camera& camera, Asked& asked) {
     const std::span rays{asked.rays, asked.count};
     Ray tested[16];
@@ -105,7 +105,7 @@ bool at_eye(const Camera& camera, const Ray& ray) {
     return ray.origin == camera.position;
 }
 
-// Finds the rays in the picture; those it does not show are computed together.
+// Interpolates rays from the buffer; those it cannot answer are evaluated together.
 void look_up(const FogBuffer& picture, const ScatterFunction& whole, const RayBatch& batch,
              std::span<Scatter> results) {
     const vec2 scale = vec2(picture.fog.size) / vec2(picture.view.size);

@@ -1,4 +1,4 @@
-// The fog of a picture, computed once for every n-th pixel and found again for any ray of the picture.
+// Fog computed once per frame, at every n-th pixel, and interpolated for any camera ray.
 #pragma once
 #include "modes/mode.h"
 #include "modes/resolution.h"
@@ -6,38 +6,38 @@
 #include "trace/view.h"
 
 namespace tyndall {
-// Fog between the eye and the first surface at the centres of pixels, of a size that is a share of the full one.
+// Fog between the eye and the first surface at pixel centers of a full- or reduced-resolution image.
 struct FogBuffer {
-    View view; // of the full picture
+    View view; // of the full-resolution image
     Image<Scatter> fog;
-    Image<float> length;            // of the ray, metres
-    std::vector<Image<vec3>> parts; // empty unless the view wants them
-    Image<float> age;               // frames that make up a pixel
+    Image<float> length;            // of the ray, meters
+    std::vector<Image<vec3>> parts; // empty unless View::fog_parts
+    Image<float> age;               // frames accumulated in a pixel
 };
 
 struct FogBufferOptions {
     Resolution share = Resolution::full;
-    bool blur = false; // over 4×4 pixels of like depth, the period of an ordered jitter
+    bool blur = false; // over 4×4 pixels of similar ray length, the period of an ordered jitter
 };
 
-// Wraps the ScatterFunction of a mode so that fog is computed for a FogBuffer and spread over the full picture with
-// regard to depth (joint bilateral: Kopf et al. 2007); with a history it goes on from the last frame's picture where
-// that shows the same place (Karis 2014). Rays that none of their four neighbours is like in length, and stretches that
-// do not start at the eye, are computed as they are.
+// Computes fog with `whole` into a FogBuffer and returns a function that upsamples it to any camera ray by joint
+// bilateral filtering (Kopf et al. 2007). With a history, it blends in the last frame's reprojected buffer (temporal
+// accumulation, Karis 2014). Rays with too few neighbors of similar length, and rays that do not start at the eye, are
+// evaluated by `whole`. With a lens, returns `whole`.
 ScatterFunction from_fog_buffer(const View& view, const Snapshot& snapshot, const FogBufferOptions& options,
                                 ScatterFunction whole, History* history);
 
-// A share of a picture size, rounded up.
+// An image size at a reduced resolution, rounded up.
 ivec2 shared_size(ivec2 size, Resolution share);
 
 struct FogBuffer;
 struct Medium;
 
-// Averages every pixel with those of like length around it: weights ½ 1 1 1 ½ along each side hold every phase of a
-// 4×4 pattern equally often.
+// Averages each pixel with neighbors of similar ray length. The weights ½ 1 1 1 ½ along each side give every phase of a
+// 4×4 pattern the same total weight.
 void blur_pattern(FogBuffer& picture);
 
-// Mixes in what the last frame's picture shows of the same fog: where the light of homogeneous fog comes from. The more
-// its near and its far half move against each other the less is remembered.
+// Blends in the last frame's fog, reprojected at the mean distance from which the light of homogeneous fog comes. The
+// larger the parallax between the near and far half of that light, the lower the weight of the history.
 void go_on_from(const FogBuffer& before, std::span<const Medium> media, FogBuffer& picture);
 }

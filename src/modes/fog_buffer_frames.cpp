@@ -6,13 +6,12 @@
 
 namespace tyndall {
 namespace {
-constexpr float longest_age = 10; // frames; older ones count less and less
-// Over these frames, of fog that moves across the picture:
-constexpr float max_smear = 0.5f; // pixels, of the near fog against the far
-constexpr float max_blur = 0.1f;  // pixels², by finding it between pixels
+constexpr float longest_age = 10; // frames; beyond, an exponential average
+// Limits on what accumulates over these frames when fog moves across the image:
+constexpr float max_smear = 0.5f; // pixels of parallax between near and far fog
+constexpr float max_blur = 0.1f;  // pixels² of variance added by bilinear resampling
 
-// Least and most light among a pixel and its neighbours: what a light that moved or went out leaves behind lies
-// outside.
+// Range of radiance in a pixel's 3×3 neighborhood; ghosts of lights that moved or went out lie outside it.
 struct Range {
     vec3 low{infinity}, high{-infinity};
 };
@@ -27,17 +26,17 @@ Range range_around(const FogBuffer& picture, ivec2 pixel) {
     return range;
 }
 
-// Where light of homogeneous fog comes from on the way through it, as a share of that way: 1/τ - T/(1 - T), the mean of
-// e^(-τs) over 0 <= s <= 1.
+// Mean position, as a fraction of a segment, from which the light of homogeneous fog comes: 1/τ - T/(1 - T), the mean
+// of s under the density e^(-τs), 0 <= s <= 1.
 float mean_share(float transmittance) {
     const float depth = -std::log(std::clamp(transmittance, 1e-6f, 1.0f));
     return depth < 0.05f ? 0.5f - depth / 12 : 1 / depth - transmittance / (1 - transmittance);
 }
 
-// A ray's fog in the last frame's picture.
+// Where the last frame shows a ray's fog.
 struct Seen {
-    vec2 pixel{0};   // of where its light comes from
-    float smear = 0; // pixels between half of that light and the other
+    vec2 pixel{0};   // of the mean position of its light
+    float smear = 0; // pixels between the near and far half of that light
 };
 std::optional<Seen> seen_before(const FogBuffer& before, const Interval<float>& fog, const Ray& ray,
                                 float transmittance) {
@@ -50,7 +49,7 @@ std::optional<Seen> seen_before(const FogBuffer& before, const Interval<float>& 
     return Seen{*light, glm::distance(*near, *far)};
 }
 
-// How much wider a mean of four pixels around a place makes what it shows: their variance, pixels².
+// Variance of the bilinear kernel at a position, pixels²: the blur that one resampling adds.
 float blur_of(vec2 pixel) {
     const vec2 share = glm::fract(pixel - 0.5f);
     return glm::dot(share, 1.0f - share);
@@ -113,7 +112,8 @@ void go_on_from(const FogBuffer& before, std::span<const Medium> media, FogBuffe
             fog.radiance = glm::mix(glm::clamp(old.fog.radiance, range.low, range.high), fog.radiance, share);
             fog.transmittance = glm::mix(old.fog.transmittance, fog.transmittance, share);
             picture.age.at(x, y) = age;
-            // Parts keep their shares of the whole; what is only remembered goes to the first.
+            // Parts keep their fractions of the total; where the new frame has no light, the history's goes to the
+            // first part.
             for (int c = 0; c < 3 && !now.parts.empty(); ++c) {
                 const float whole = now.fog.at(x, y).radiance[c];
                 if (whole > 0)

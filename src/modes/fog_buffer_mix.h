@@ -1,11 +1,11 @@
-// Pixels of a FogBuffer mixed with regard to how far their rays run.
+// Interpolation between pixels of a FogBuffer whose rays have similar length.
 #pragma once
 #include "modes/fog_buffer.h"
 #include "scene/camera.h"
 
 namespace tyndall {
-inline constexpr float alike = 0.05f; // lengths that differ by less than this share show the same fog
-inline constexpr float enough = 0.2f; // bilinear weight of like neighbours that a ray needs
+inline constexpr float alike = 0.05f; // relative difference in length below which rays show the same fog
+inline constexpr float enough = 0.2f; // minimum total weight of similar neighbors
 
 inline bool like(float a, float b) { return std::abs(a - b) <= alike * std::max(a, b); }
 
@@ -13,7 +13,7 @@ inline Ray ray_through(const FogBuffer& picture, ivec2 pixel) {
     return camera_ray(picture.view.camera, picture.fog.size, vec2(pixel) + 0.5f);
 }
 
-// Four neighbours of a place in the picture, with their bilinear weights; those outside have none.
+// The four pixels around a position, with their bilinear weights; clamped to the image.
 struct Taps {
     ivec2 at[4];
     float weight[4];
@@ -36,13 +36,13 @@ inline void add(Scatter& sum, const Scatter& part, float weight) {
     sum.transmittance += part.transmittance * weight, sum.validity += part.validity * weight;
 }
 
-// The mean of some neighbours, and how much they weigh together.
+// The weighted mean of some neighbors, and their total weight.
 struct Mixed {
     Scatter fog{vec3(0), 0, 0, 0, vec3(0)};
     float weight = 0;
 };
 
-// Mean of the taps that show fog of about the same length.
+// Mean of the taps whose rays have about this length; zeroes the other weights and renormalizes the rest.
 inline Mixed mixed(const FogBuffer& picture, Taps& taps, float length) {
     Mixed result;
     for (int k = 0; k < 4; ++k) {

@@ -11,10 +11,11 @@
 
 namespace tyndall {
 namespace {
-constexpr float cut_cosine = 0.94f;  // of the angle the camera turns between two frames: 20 degrees
+constexpr float cut_cosine = 0.94f;  // of the camera's rotation between two frames: 20 degrees
 constexpr float cut_distance = 0.1f; // of the scene's diagonal
-constexpr float switched = 0.8f;     // of what a light had, or had of what it has
-constexpr float moved_on = 5e-4f;    // of its distance from the camera, or radians: what trails show in ten frames
+constexpr float switched = 0.8f;     // minimum ratio of a light's intensities in two frames
+constexpr float moved_on = 5e-4f;    // fraction of a light's distance from the camera, or radians: larger moves leave
+                                     // visible trails over ten frames
 
 bool same(const Settings& a, const Settings& b) {
     return std::ranges::all_of(setting_rows(), [&](const SettingRow& row) { return row.get(a) == row.get(b); });
@@ -32,7 +33,7 @@ bool is_switched(vec3 from, vec3 to) {
     return !glm::all(glm::greaterThanEqual(glm::min(from, to), switched * glm::max(from, to)));
 }
 
-// Whether a light is another, or was switched.
+// Whether a light changed its kind or brightness.
 bool is_switched(const Light& from, const Light& to) {
     return from.kind != to.kind || is_switched(from.intensity * from.volume_scale, to.intensity * to.volume_scale);
 }
@@ -45,7 +46,7 @@ bool is_same(const Gobo* from, const Gobo* to) {
     return from == to || (from && to && !to->content.empty() && from->content == to->content);
 }
 
-// Whether what goes where has changed.
+// Whether the light's angular distribution (IES profile or gobo) has changed.
 bool shines_otherwise(const LightFilter* from, const LightFilter* to) {
     if (from == to) return false;
     if (!from || !to || from->profile != to->profile || !is_same(from->gobo.get(), to->gobo.get())) return true;
@@ -61,7 +62,7 @@ bool is_reshaped(const AreaShape* from, const AreaShape* to) {
            glm::distance(from->half, to->half) > moved_on * glm::length(to->half);
 }
 
-// Whether a light would leave a trail.
+// Whether a light moved or changed shape enough to leave a trail in the history.
 bool leaves_trail(const Light& from, const Light& to, vec3 eye) {
     if (!is_distant(to) && glm::distance(from.position, to.position) > moved_on * glm::distance(to.position, eye))
         return true;
@@ -80,7 +81,7 @@ int follow(History& history, const View& view, const Snapshot& snapshot, const S
                    !is_switched(history.ambient, ambient) &&
                    std::ranges::equal(history.lights, lights,
                                       [](const Light& from, const Light& to) { return !is_switched(from, to); });
-    // Froxels clamp what they remember to what they see around: a light may wander through them.
+    // Froxel history is clamped to its neighborhood, so lights may move.
     if (goes_on && !history.froxels)
         goes_on = std::ranges::equal(history.lights, lights, [&](const Light& from, const Light& to) {
             return !leaves_trail(from, to, view.camera.position);

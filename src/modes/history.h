@@ -13,20 +13,20 @@ struct Scene;
 struct Snapshot;
 struct FogBuffer; // of modes/fog_buffer.h
 
-// Handed to prepare() frame after frame, empty before the first. A mode that keeps something calls follow() first.
+// Passed to prepare() frame after frame, empty before the first. A mode that stores something calls follow() first.
 struct History {
-    int frames = 0; // since it was empty
+    int frames = 0; // since it was last cleared
     View view;      // of the last frame
     Settings settings;
     const Scene* scene = nullptr;
     std::vector<Light> lights;
-    vec3 ambient{0}; // with the environment's mean
+    vec3 ambient{0}; // including the environment's mean
     std::shared_ptr<FroxelHistory> froxels;
     std::shared_ptr<const FogBuffer> picture;
 };
 
-// Notes the frame that begins. The history is emptied first when this frame does not go on from the last one: another
-// scene, picture size, lens or settings, a cut, or a light switched, moved on or shining another way. Returns the
-// number of frames it reaches back.
+// Records the frame that begins. First clears the history if this frame does not continue the last one: another scene,
+// image size, lens or settings, a camera cut, or a light that was switched, moved or reshaped. Returns the number of
+// earlier frames it holds.
 int follow(History& history, const View& view, const Snapshot& snapshot, const Settings& settings);
 }

@@ -1,4 +1,4 @@
-// Where techniques that look at the frames before show what is no longer there.
+// Limitations of techniques with temporal history: ghosts of what has moved.
 #pragma once
 #include "modes/limitation.h"
 
@@ -19,17 +19,17 @@ inline constexpr LimitationKind moving_shadows{
 inline constexpr LimitationKind moving_fog{"moving_fog", "moving: with --history, it trails behind by a few frames"};
 }
 
-// Whether the scene gives a light keys for where it is or shines to.
+// Whether a light's position or direction is animated.
 bool is_moving(const Snapshot& snapshot, const Light& light);
 
-// Keys for where the camera is.
+// Reports a camera with an animated position.
 void add_moving_camera(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
-// Surfaces with keys for where they are, that shadow a light, of those `counts` holds for.
+// Reports animated surfaces that shadow any light for which `counts` returns true.
 void add_moving_shadows(
     const Snapshot& snapshot, Limitations& limitations,
     const std::function<bool(const Light&)>& counts = [](const Light&) { return true; });
 
-// Fog that moves or changes.
+// Reports fog that moves or changes.
 void add_moving_fog(const Snapshot& snapshot, Limitations& limitations);
 }

@@ -1,4 +1,4 @@
-// Fog behind a lens, for techniques that know the fog of one eye only: they see it through the middle of the lens.
+// Depth of field for techniques that compute fog from a single eye point: fog is seen through the center of the lens.
 #pragma once
 #include "integrate/ray_batch.h"
 #include "modes/limitation.h"
@@ -15,14 +15,14 @@ inline constexpr LimitationKind no_fog_picture{
     "no_fog_picture", "does nothing: through a lens the fog of every ray is computed by itself"};
 }
 
-// Asks for rays from the middle of the lens that meet those given in the plane in focus, and begin and end as deep as
-// they; `scatter` itself where the camera has no lens.
+// Wraps `scatter` to evaluate rays from the center of the lens through the same points in the plane of focus, with the
+// same planar depths of start and end. Returns `scatter` itself if the camera has no lens.
 ScatterFunction through_middle(const View& view, ScatterFunction scatter);
 
-// How wide the discs of lamps in the picture and of the far end of the fog would be. For techniques that take fog
-// through the middle.
+// Reports the largest circle of confusion among the lamps in the image and the far end of the fog. For techniques that
+// use through_middle().
 void add_fog_through_middle(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
-// For techniques that look fog up in a picture of it: that a row of theirs is in vain.
+// Reports that the setting `row` has no effect through a lens. For techniques that use a FogBuffer.
 void add_no_fog_picture(const View& view, const char* row, Limitations& limitations);
 }

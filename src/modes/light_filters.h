@@ -1,4 +1,4 @@
-// IES profiles and gobos in techniques that have no place for all of them.
+// IES profiles and gobos in techniques that cannot represent them fully.
 #pragma once
 #include "modes/limitation.h"
 
@@ -17,15 +17,16 @@ inline constexpr LimitationKind mean_filter{
     "its IES profile, gobo or cosine is drawn as its mean: what the light sends varies by {} times that"};
 }
 
-// Lights that send the mean of what their filters let through, evenly.
+// Replaces each light's filter by its mean, equal in all directions.
 void average_filters(Snapshot& snapshot);
 
 void add_mean_filters(const Snapshot& snapshot, Limitations& limitations);
 
-// Gobos, or profiles as well, that rays see by so many jittered nodes across a light's beam.
+// Reports filters that rays sample at `nodes` jittered nodes across a light's beam: gobos too fine for quadrature, or
+// all filters.
 enum class Sampled { fine_gobos, all_filters };
 void add_sampled_filters(const Snapshot& snapshot, Sampled which, double nodes, Limitations& limitations);
 
-// A filter that shows nothing finer than an angle, radians.
+// Reports a filter with detail finer than `angle`, radians, which is blurred.
 void add_blurred_filter(const Light& light, float angle, Limitations& limitations);
 }

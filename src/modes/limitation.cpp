@@ -9,7 +9,7 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t max_named = 3; // of a group
+constexpr size_t max_named = 3; // names listed per group
 constexpr size_t max_name = 60; // bytes
 
 std::string_view word_of(Subject subject) {
@@ -63,7 +63,7 @@ std::string where_of(const LimitationGroup& group) {
     return std::to_string(group.names.size()) + " " + plural_of(group.worst.subject) + " (" + joined(names, ", ") + ")";
 }
 
-// Two digits that count, without an exponent: 0.012, 3.4, 160.
+// Two significant digits, without an exponent: 0.012, 3.4, 160.
 std::string amount_text(double amount) {
     if (!(std::abs(amount) >= 99.5 && std::abs(amount) < 1e12)) return formatted("%.2g", amount);
     const double unit = std::pow(10, std::floor(std::log10(std::abs(amount))) - 1);

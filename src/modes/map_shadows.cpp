@@ -11,9 +11,9 @@
 
 namespace tyndall {
 namespace {
-constexpr float sharp_pixels = 4; // a texel that covers more of the picture shows
+constexpr float sharp_pixels = 4; // larger texels are visible
 
-// The largest texel of a light's map at the ends of the rays: its size, and its share of a pixel there.
+// Reports a light's largest shadow-map texel at the ends of the rays, in meters and in pixels.
 void add_texels(const View& view, const ShadowMap& map, const Light& light, std::span<const Ray> rays,
                 Limitations& limitations) {
     float largest = 0, pixels = 0;

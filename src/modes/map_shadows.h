@@ -1,4 +1,4 @@
-// Shadow maps as a visibility of modes.
+// Shadow maps as modes use them for visibility.
 #pragma once
 #include "modes/limitation.h"
 #include "trace/shadows/cached_shadows.h"
@@ -18,9 +18,9 @@ inline constexpr LimitationKind no_partial_shadows{
     "the fog, others none"};
 }
 
-// Shadow maps of all lights, as the settings ask for them.
+// One shadow map per light, with the options of `settings`.
 ShadowMaps make_shadow_maps(const View& view, const Snapshot& snapshot, const Settings& settings);
 
-// What shadow maps make wrong, whoever looks them up.
+// Reports the errors of shadow maps, whichever mode uses them.
 void add_map_shadows(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations);
 }

@@ -35,7 +35,7 @@ bool reads(const Mode& mode, std::string_view row) {
     if (prefix == "pixel") return true;
     if (prefix == "style") return honours_style(mode);
     if (prefix == "fluence") return mode.adds_fluence;
-    if (prefix == "terms") // the light's own for surfaces too, which most modes share
+    if (prefix == "terms") // terms.light* applies to surfaces too, which most modes leave to the renderer
         return row.starts_with("terms.light") ? mode.surfaces != Surfaces::own : mode.accuracy != Accuracy::artistic;
     return prefix == row_prefix(mode) || prefix == mode.also_reads;
 }

@@ -1,7 +1,7 @@
-// Fog at a share of the resolution.
+// Reduced resolution for fog.
 #pragma once
 
 namespace tyndall {
-// How large a picture a technique computes inside, along each side; its pixels are then spread over the whole one.
+// Resolution at which a technique computes fog, along each side, as a fraction of the image's; the result is upsampled.
 enum class Resolution { full, half, third, quarter };
 }

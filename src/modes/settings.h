@@ -1,4 +1,4 @@
-// How to render: plain structs with defaults, and the same fields as named rows for --set, help, the viewer and
+// How to render: plain structs with defaults, and the same fields as named rows for --set, help, the viewer and file
 // headers.
 #pragma once
 #include "base/math.h"
@@ -22,24 +22,24 @@ struct PixelSettings {
     PixelFilter filter = PixelFilter::blackman_harris;
     float filter_radius = 1; // pixels
     Jitter jitter = Jitter::interleaved;
-    int lamp_samples = 16; // most times as many rays where a local light is seen
-    int edge_samples = 4;  // most times as many rays where the picture changes from pixel to pixel
+    int lamp_samples = 16; // maximum factor on samples where a local light is in view
+    int edge_samples = 4;  // maximum factor on samples where the image changes between pixels
 };
 
-inline constexpr int all_orders = 65536; // ends paths that nothing else ends
+inline constexpr int all_orders = 65536; // caps the length of paths that nothing else terminates
 
 struct PathSettings {
-    int orders = all_orders; // most scatterings of light, in fog or on surfaces
+    int orders = all_orders; // maximum number of scattering events, in fog or on surfaces
 };
 
-// Settings of every technique, and what they share. A technique's own are found by their type: settings.of<T>() is
-// T() until something was set.
+// Settings of all techniques, shared ones first. A technique's own settings are stored by type: settings.of<T>() is a
+// default T() until it is set.
 struct Settings {
     PixelSettings pixel;
     TermSettings terms;
     StyleSettings style;
     MarchSettings march;
-    FluenceSettings fluence; // of march and froxel
+    FluenceSettings fluence; // used by march and froxel
     PathSettings path;
 
     template<class T> T& of() {
@@ -64,21 +64,20 @@ Settings settings_for(Quality quality);
 // One field by name: march.step_depth, its unit, range or choices, and what it does.
 struct SettingRow {
     std::string name, unit, doc;
-    std::vector<std::string> choices{}; // of an enumeration or switch; empty for a number
-    double low = 0, high = 0;           // range of a number
+    std::vector<std::string> choices{}; // for an enumeration or switch; empty for a number
+    double low = 0, high = 0;           // range, for a number
     bool integer = false;
-    bool advanced = false; // most users leave it alone
+    bool advanced = false; // most users can ignore it
     std::function<std::string(const Settings&)> get{};
     std::function<void(Settings&, std::string_view)> set{}; // throws Error (usage)
-    int parts = 1;                                          // numbers of a value; 3 = a colour
+    int parts = 1;                                          // numbers per value; 3 = a color
 };
 const std::vector<SettingRow>& setting_rows();
 
-// "march.step_depth=0.1". Throws Error (usage): an unknown row names the nearest one.
+// Applies "march.step_depth=0.1". Throws Error (usage); for an unknown row the message suggests the nearest name.
 void apply_setting(Settings& settings, std::string_view assignment);
 
-// Names of the modes that are taken unless said otherwise (modes/mode.h): for pictures, and for those in between while
-// things move.
+// Names of the default modes (modes/mode.h): for final images, and for interactive previews.
 std::string main_mode_name();
 std::string interactive_mode_name();
 

@@ -12,7 +12,7 @@ std::string short_number(double value);
 
 vec3 parsed_color(std::string_view row, std::string_view text, double low, double high);
 
-// A row for a number: `field` finds it in the settings.
+// A row for a number: `field` returns a reference to it in the settings.
 template<class Field>
 SettingRow number_row(std::string name, std::string unit, double low, double high, std::string doc, Field field) {
     using T = std::remove_reference_t<decltype(field(std::declval<Settings&>()))>;
@@ -24,7 +24,7 @@ SettingRow number_row(std::string name, std::string unit, double low, double hig
     return row;
 }
 
-// A row for an enumeration whose values are the positions of `choices`; a bool is {"off", "on"}.
+// A row for an enumeration whose values index `choices`; a bool is {"off", "on"}.
 template<class Field>
 SettingRow choice_row(std::string name, std::vector<std::string> choices, std::string doc, Field field) {
     using T = std::remove_reference_t<decltype(field(std::declval<Settings&>()))>;
@@ -38,7 +38,7 @@ SettingRow choice_row(std::string name, std::vector<std::string> choices, std::s
     return row;
 }
 
-// A row for a colour: three numbers with commas between.
+// A row for a color: three comma-separated numbers.
 template<class Field>
 SettingRow color_row(std::string name, std::string unit, double low, double high, std::string doc, Field field) {
     SettingRow row{name, unit, doc, {}, low, high};
@@ -53,7 +53,7 @@ SettingRow color_row(std::string name, std::string unit, double low, double high
     return row;
 }
 
-// Marks rows, by their names without the prefix, as ones that most users leave alone.
+// Marks rows, named without their prefix, as advanced.
 void mark_advanced(std::vector<SettingRow>& rows, std::initializer_list<std::string_view> names);
 
 #define TYNDALL_FIELD(member)                                                                                          \

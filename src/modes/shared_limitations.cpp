@@ -18,19 +18,19 @@
 
 namespace tyndall {
 namespace {
-constexpr float deep_cell = 0.3f;    // optical depths, across which the dimming of light is far from linear
-constexpr float deep_step = 0.15f;   // optical depths
-constexpr float detail_voxels = 2;   // of fog that changes from voxel to voxel
+constexpr float deep_cell = 0.3f;    // optical depth of a cell, across which attenuation is far from linear
+constexpr float deep_step = 0.15f;   // optical depth of a step
+constexpr float detail_voxels = 2;   // longest step, in voxels, before detail is lost
 constexpr float seen_offset = 0.25f; // pixels
 
-// How thick a medium can be at most across its own bounds, as optical depth.
+// Upper bound on a medium's optical depth within its own and the scene's bounds.
 float thickness(const Medium& medium, const Box& scene_bounds) {
     Box box = medium.world_bounds;
     box.low = glm::max(box.low, scene_bounds.low), box.high = glm::min(box.high, scene_bounds.high);
     return box.empty() ? 0 : medium.majorant() * glm::length(box.size());
 }
 
-// How far places as far from the origin as the camera are off, against a pixel in the middle of the scene.
+// Compares the float spacing at the camera's distance from the origin with the width of a pixel at the scene's center.
 void add_float_precision(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     const Camera& camera = view.camera;
     if (snapshot.bounds.empty()) return;
@@ -42,7 +42,7 @@ void add_float_precision(const View& view, const Snapshot& snapshot, Limitations
     limitations.push_back({Severity::degraded, &limitation::float_precision, Subject::scene, "", {offset}});
 }
 
-// A tabulated phase function as one lobe, which is what the grid of fluence has of it.
+// Reports tabulated phase functions, which the fluence grid approximates by one lobe of the same mean cosine.
 void add_table(const Medium& medium, Limitations& limitations) {
     const Phase& phase = medium.optics.phase;
     if (!phase.shape || !phase.shape->lobes.empty()) return;
@@ -119,7 +119,7 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
 void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations) {
     const std::vector<Ray> rays = probing_rays(view, snapshot);
     for (const Medium& medium : thickest_media(snapshot)) {
-        if (only_emits(medium.optics)) continue; // is asked at nodes of its own
+        if (only_emits(medium.optics)) continue; // sampled at its own nodes, not at steps
         float length = 0;
         for (const Ray& ray : rays)
             length = std::max(length, clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max}).length());
@@ -174,8 +174,8 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
 }
 
 namespace {
-// Lights that change so much from moment to moment that their sum is no integral: of light that fades by a factor r
-// between two, the middle is off by (ln r)² / 24.
+// Reports lights that change too much between two time samples for their sum to approximate the integral: where a light
+// fades by a factor r between two, the midpoint rule is off by (ln r)² / 24.
 void add_fading(const Snapshot& snapshot, Limitations& limitations) {
     for (const Light& light : snapshot.lights) {
         double largest = 0, before = 0;
@@ -191,7 +191,7 @@ void add_fading(const Snapshot& snapshot, Limitations& limitations) {
     }
 }
 
-// The largest share that the lesser of two files has at a moment, percent.
+// The largest weight, in percent, that the lesser of two blended files has at any time sample.
 double lesser_share(const Snapshot& snapshot) {
     double largest = 0;
     for (const Snapshot& moment : *snapshot.moments) {
@@ -209,7 +209,7 @@ void add_volume_motion(const Snapshot& snapshot, size_t medium, Limitations& lim
     if (source.velocity) {
         const FogTravel travel = fog_travel(snapshot, medium);
         if (travel.voxels == 0) return;
-        const bool in_steps = travel.voxels > travel.places; // of more than two voxels, there and back
+        const bool in_steps = travel.voxels > travel.places; // the places over ±`voxels` are more than two voxels apart
         add(in_steps ? Severity::degraded : Severity::info, limitation::advected_volumes, travel.voxels, travel.places);
     } else if (moves(source)) {
         add(Severity::degraded, limitation::blended_volumes, lesser_share(snapshot));
@@ -221,7 +221,7 @@ void add_volume_motion(const Snapshot& snapshot, size_t medium, Limitations& lim
 }
 
 void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations) {
-    constexpr double separate = 1; // pixels: then thin lines are seen apart
+    constexpr double separate = 1; // pixels: beyond this, copies of thin lines appear separate
     if (!view.shutter || !snapshot.moments || !snapshot.scene) return;
     add_fading(snapshot, limitations);
     const double moments = static_cast<double>(view.shutter->cameras.size()), between = view.shutter->motion / moments;
@@ -235,7 +235,7 @@ void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limita
 
 namespace {
 void add_mean_color(const LimitationKind& kind, const Medium& medium, float spread, Limitations& limitations) {
-    constexpr float visible = 0.02f; // share
+    constexpr float visible = 0.02f; // fraction
     limitations.push_back({spread > visible ? Severity::degraded : Severity::info,
                            &kind,
                            Subject::medium,

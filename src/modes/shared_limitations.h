@@ -1,4 +1,4 @@
-// Limitations that several techniques share, and what finds them.
+// Limitations that several techniques share, and the functions that detect them.
 #pragma once
 #include "base/math.h"
 #include "modes/limitation.h"
@@ -69,42 +69,44 @@ inline constexpr LimitationKind average_light{
 inline constexpr LimitationKind hard_shadows{"hard_shadows", "size ignored: shadows in the fog have hard edges"};
 }
 
-// The media, each as the channel meets it that it dims most.
+// The media, each with the extinction of its most strongly attenuated color channel.
 std::vector<Medium> thickest_media(const Snapshot& snapshot);
 
-// Where a medium is so thick that light scattered more than once shows, ambient light that nothing shadows, and places
-// so far from the origin that floats do not resolve them.
+// Reports media thick enough for multiple scattering to show, ambient light that nothing shadows, and places so far
+// from the origin that floats do not resolve them.
 void add_single_scattering(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
-// Where fog dims the light to it within a cell of a light grid that has so many cells across the fog.
+// Reports grids so dense that light changes strongly within a cell of a light grid with `cells` cells across the fog.
 void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limitations);
 
-// Rays through the middle and towards the corners of the image, to the end of fog and scene; of unbounded fog that the
-// scene takes no part of, to where nothing is seen through it.
+// Camera rays through the center and near the corners of the image, up to the end of the fog within the scene's bounds.
+// If none meets that: up to fog_reach(), where fog becomes opaque.
 std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot);
 
-// Where so many steps along a ray are too few for the detail of a grid; with `fixed`, for its light in thick fog too.
+// Reports media for which `steps` steps along a ray are too few to resolve a grid's detail; if the number is `fixed`,
+// also those too dense for such steps.
 void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations);
 
-// Optical depths of a step or a froxel that take most of the light that falls on them: what is seen is by chance.
+// Optical depth of a step or froxel beyond which it attenuates most of the light that crosses it, so that results
+// depend on where the sample falls.
 inline constexpr float dark_depth = 2;
 
-// Where lights are dimmed by less than the fog they cross.
+// Reports lights whose attenuation by fog is off or averaged.
 void add_light_transmittance(const Snapshot& snapshot, LightTransmittance light, Limitations& limitations);
 
-// What a grid of light that has been scattered before cannot show; ambient light too.
+// Reports what a fluence grid for multiple scattering cannot show, unshadowed ambient light, and float precision.
 void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettings& settings, Limitations& limitations);
 
-// What motion blur is made of, and what does not move in it.
+// Reports the time samples of motion blur, and volumes that do not move within them.
 void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
-// Where colors of grids count with their mean: of what scatters, and of what emits.
+// Report media whose albedo or emission grid is reduced to its mean color.
 void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations);
 void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
 
-// Of what is off: a share that shows, and one that is wrong.
+// Relative errors that are visible, and that make an image wrong.
 inline constexpr double seen_share = 0.02, wrong_share = 0.5;
 
-// Whether a medium sends light of others on.
+// Whether a medium scatters light: not purely emissive, and albedo above 0.
 bool scatters_light(const Medium& medium);
 }

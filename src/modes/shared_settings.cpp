@@ -1,5 +1,4 @@
-// Settings that techniques share: how pixels are sampled, the terms of the light, multiple scattering, the artist's
-// controls.
+// Settings that techniques share: pixel sampling, the terms of the light, multiple scattering, artistic controls.
 #include "modes/settings_rows.h"
 
 namespace tyndall {

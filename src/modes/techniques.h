@@ -1,4 +1,4 @@
-// The techniques, in the order of help and charts: one line each. Each makes its row in its folder.
+// The techniques, in the order of help and charts. NAME_mode() in each technique's folder returns its row of the table.
 #pragma once
 #define TYNDALL_TECHNIQUES(ROW)                                                                                        \
     ROW(march)                                                                                                         \

@@ -1,4 +1,4 @@
-// Beam cards: a look, not light. Cards stand where light leaks in and are drawn as textured quads.
+// Beam cards: an artistic effect. Textured quads are drawn where light leaks into the scene.
 #include "modes/billboard/billboard.h"
 #include "modes/billboard/limitations.h"
 #include "modes/billboard/settings.h"

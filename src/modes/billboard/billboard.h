@@ -1,4 +1,4 @@
-// Beam cards: where light leaks into the scene, and what is drawn there.
+// Beam cards: placement where light leaks into the scene, and the quads drawn there.
 #pragma once
 #include "integrate/ray_batch.h"
 #include "modes/billboard/settings.h"
@@ -13,59 +13,59 @@ namespace tyndall {
 struct View;
 struct Snapshot;
 struct Settings;
-// A beam with an elliptic cross-section that widens evenly from one end to the other.
+// A beam with an elliptical cross-section whose size varies linearly along it.
 struct BeamCard {
     std::string name;
     int light = 0; // of the snapshot
     vec3 from{0}, to{0};
     vec3 across[2]{};              // unit: axes of the cross-section
-    vec2 half_from{0}, half_to{0}; // its half widths along them, metres
+    vec2 half_from{0}, half_to{0}; // half widths along these axes, meters
     vec3 tint{1};
     uint32_t seed = 0;
 };
 
-// Cards for the openings that lights shine through, and those placed by hand. Does not depend on the camera.
-// Seen from each light: cells of a grid of rays that get past the occluders next to the light are lit, and
-// connected lit cells are an opening. Those that fill much of the grid are cut up (k-means); a free spot has one card.
-// Under an open sun the gaps between neighbouring surfaces are the openings; `open`: per light, the lit share of such a
-// sun's grid.
+// Cards for the openings that lights shine through, and hand-placed ones. Independent of the camera.
+// A grid of rays is traced from each light. Cells whose ray crosses enough fog before the first surface are lit, and
+// connected lit cells form an opening. Large openings are split (k-means); an unobstructed spot gets one card. For a
+// sun in the open, the gaps between neighboring surfaces are the openings; `open`: per light, the lit fraction of such
+// a sun's grid, else 0.
 std::vector<BeamCard> place_cards(const Snapshot& snapshot, const BillboardSettings& settings,
                                   std::vector<float>* open = nullptr);
 
-// How far a point is from the beam's axis, in half widths of the beam there; infinite before and behind it.
+// Distance of a point from the beam's axis, in half widths of the beam there; infinite beyond the beam's ends.
 float off_axis(const BeamCard& card, vec3 point);
 
-// A card as this camera sees it.
+// A card's quad for the current camera.
 struct CardQuad {
     int card = 0, light = 0;
     vec3 start{0}, normal{0}, along{0}, side{0}; // orthonormal; the beam runs from `start` along `along`
-    float length = 0;                            // on the plane
-    float half_from = 0, half_to = 0;            // across
+    float length = 0;                            // of the quad
+    float half_from = 0, half_to = 0;            // half widths of the quad at its ends
     vec3 axis{0};                                // of the beam
     vec3 across[2]{};
-    vec2 width_from{0}, width_to{0}; // of the beam, as half_from and half_to of the card
+    vec2 width_from{0}, width_to{0}; // of the beam: the card's half_from and half_to
     vec3 tint{1};
-    float share = 1; // of the beam's brightness: sway, an eye inside
+    float share = 1; // factor on brightness: sway, and fade when the eye is inside
     float seed = 0;
-    bool crossed = false; // one of two that stand still
+    bool crossed = false; // one of two fixed, crossed quads
 };
 
-// Sixteen quads side by side, to leave out those that a packet of rays cannot meet. A ray is (right, up, forward) of
-// its direction, or (right, up, 1) of its place in an orthographic picture.
+// Bounds of 16 quads, to cull those that no ray of a packet can hit. A ray is represented by the (right, up, forward)
+// components of its direction or, with an orthographic camera, by (right, up, 1) of its origin.
 struct CardGroup {
-    float edges[4][3][16] = {}; // products with rays that meet the quad are not negative
+    float edges[4][3][16] = {}; // edge planes: dot products with rays that hit the quad are not negative
     float nearest[16];          // planar depth of the nearest corner
 };
 
 struct Billboards {
     BillboardSettings settings;
     StyleSettings style;
-    Snapshot snapshot; // stylised, fog made even
+    Snapshot snapshot; // stylized, with homogeneous fog
     std::vector<CardQuad> quads;
     std::vector<CardGroup> groups; // of the quads
-    std::vector<float> veils;      // per light: share of the unshadowed light that an open sun leaves in all fog
+    std::vector<float> veils;      // per light: factor on the unshadowed haze of a sun in the open
     Camera camera;
-    float pixel = 0; // width of a pixel one metre away
+    float pixel = 0; // width of a pixel at a distance of 1 m
     float seconds = 0;
 };
 

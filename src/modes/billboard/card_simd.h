@@ -1,5 +1,5 @@
-// Rays that meet one beam card: where, and how much of the card is seen there (see base/simd/simd.h for how such files
-// are compiled).
+// Intersection of rays with a beam card, and the card's texture and masks there (see base/simd/simd.h for how such
+// files are compiled).
 #if defined(TYNDALL_MODES_BILLBOARD_CARD_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_BILLBOARD_CARD_SIMD_H
 #undef TYNDALL_MODES_BILLBOARD_CARD_SIMD_H
@@ -17,10 +17,11 @@ namespace tyndall::HWY_NAMESPACE {
 namespace {
 struct Packet {
     Vec3s origin, direction;
-    Floats t_max, before; // length, and the way from the eye to the origin
+    Floats t_max, before; // length, and distance from the eye to the origin
 };
 
-// Where rays meet a card: along the beam 0..1 and in metres, across it -1..1.
+// Intersections of rays with a card. Along the beam: 0..1 (share) and meters; across it: -1..1; `half`: half width
+// there.
 struct OnCard {
     Mask16 met;
     Floats t, share, along, across, half;
@@ -51,7 +52,7 @@ HWY_INLINE Floats value_noise(const Floats& x, const Floats& y, int32_t seed) {
     return mixed(low, high, sv);
 }
 
-// Where rays meet the plane of a card, and which of them do within it.
+// Intersects rays with a card's plane; `met` marks hits inside the card.
 HWY_INLINE OnCard meet(const Packet& packet, const CardQuad& quad) {
     OnCard on;
     const Floats slope = dot(packet.direction, splat(quad.normal));
@@ -67,10 +68,10 @@ HWY_INLINE OnCard meet(const Packet& packet, const CardQuad& quad) {
     return on;
 }
 
-// What textures take for a metre: beams are taken to be five long.
+// Unit length of the textures: a fifth of the beam.
 inline float card_unit(const CardQuad& quad) { return 0.2f * quad.length; }
 
-// Random stripes along the beam, coarse and fine, that change slowly on their way: 0..1.
+// Random streaks along the beam, coarse and fine, that vary slowly along it: 0..1.
 HWY_INLINE Floats streaks(const Billboards& billboards, const CardQuad& quad, const OnCard& on) {
     const BillboardSettings& s = billboards.settings;
     const int32_t seed = static_cast<int32_t>(quad.seed * 1000);
@@ -88,7 +89,7 @@ HWY_INLINE Floats streaks(const Billboards& billboards, const CardQuad& quad, co
 // Dust: round dots in some cells of a grid that drifts along and across the beam, never smaller than a pixel.
 HWY_INLINE Floats specks(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
     const float cell = 0.11f * card_unit(quad), radius = 0.04f * cell;
-    constexpr float populated = 0.35f; // share of cells
+    constexpr float populated = 0.35f; // fraction of cells
     const float time = billboards.seconds;
     const int32_t seed = static_cast<int32_t>(quad.seed * 1000) + 7;
     const Floats x = (on.across * on.half + 0.2f * cell * std::sin(0.7f * time + quad.seed)) * (1 / cell);
@@ -99,14 +100,15 @@ HWY_INLINE Floats specks(const Billboards& billboards, const CardQuad& quad, con
     const Floats dy = (y - fy) - mixed(0.3f, 0.7f, random16(i, j, seed + 1));
     const Floats pixel = (on.t + packet.before) * (0.9f * billboards.pixel);
     const Floats size = min(max(pixel, radius) * (1 / cell), 0.3f);
-    const Floats dim = min(radius * radius / max(pixel * pixel, 1e-12f), 1.0f); // of dots held at a pixel's size
+    const Floats dim = min(radius * radius / max(pixel * pixel, 1e-12f), 1.0f); // for dots enlarged to a pixel
     const Floats off = fused(dx, dx, dy * dy) / (size * size);
     const Floats chance = random16(i, j, seed + 2);
     const Floats bright = zero_unless(chance < populated, chance * (1 / populated));
     return bright * dim * max(1.0f - off, 0.0f);
 }
 
-// Share of the card's brightness that its soft borders, surfaces close behind and fades leave.
+// Factor on a card's brightness: soft borders, fade in front of surfaces (soft particles), and near, far and edge-on
+// fades.
 HWY_INLINE Floats mask(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
     const BillboardSettings& s = billboards.settings;
     const Floats away = on.t + packet.before;
@@ -116,14 +118,14 @@ HWY_INLINE Floats mask(const Billboards& billboards, const CardQuad& quad, const
     if (s.near_fade > 0) share = share * smooth(0.25f * s.near_fade, s.near_fade, away);
     share = share * (1.0f - smooth(0.5f * s.far_fade, s.far_fade, away));
     const Floats facing = abs(dot(packet.direction, splat(quad.normal)));
-    // Of two crossed cards sin² + cos² is seen, whatever side they are seen from.
+    // Projected width times this factor sums to sin² + cos² = 1 over two crossed cards, from any side.
     share = share * (quad.crossed ? facing : smooth(0, 0.75f, facing));
     if (fades(billboards.style))
         share = share * max(min((billboards.style.range - away) * (1 / (0.2f * billboards.style.range)), 1.0f), 0.0f);
     return share;
 }
 
-// How far a ray runs inside the beam: the chord of its elliptic cross-section, longer on a slant.
+// Length of a ray inside the beam: the chord of its elliptical cross-section, longer at grazing angles.
 HWY_INLINE Floats chord(const CardQuad& quad, const OnCard& on, const Packet& packet) {
     const Floats cosine = dot(packet.direction, splat(quad.axis));
     const Floats sine = sqrt(max(1.0f - cosine * cosine, 1e-4f));

@@ -29,7 +29,7 @@ Packet make_packet(const Billboards& billboards, const RayBatch& batch) {
     return {rays.origin, rays.direction, rays.t_max, max(load(before), 0.0f)};
 }
 
-// Radiance per unit of the light's intensity, by an even beam in homogeneous fog: J (1 - e^-σc).
+// Radiance, per unit of the light's intensity, of a uniformly lit beam in homogeneous fog: J (1 - e^-σc) for a chord c.
 Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
     const Light& light = billboards.snapshot.lights[quad.light];
     const bool sun = is_distant(light);
@@ -47,7 +47,7 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCar
     }
     Floats arriving = 1.0f;
     if (!sun) {
-        // Close to the light cards stay as bright as 0.15 units away from it.
+        // Within 0.15 units of the light, cards are as bright as at 0.15 units.
         const float reach = std::max(light.radius, 0.15f * card_unit(quad));
         const Vec3s towards = splat(light.position) - on.point;
         const Floats square = dot(towards, towards);
@@ -61,8 +61,8 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCar
     return scattered * (arriving * exp(-depth) * length * mean_transmittance(extinction * length));
 }
 
-// Light of a sun in the open, per unit of its intensity: single scattering of homogeneous fog without shadows, in three
-// pieces of the way through fog, the nearest the shortest.
+// Haze of a sun in the open, per unit of its intensity: unshadowed single scattering in homogeneous fog, in three
+// segments of the ray, the nearest the shortest.
 Vec3s veil_light(const Billboards& billboards, const Light& light, const Packet& packet) {
     const StyleSettings& style = billboards.style;
     Floats low = infinity, high = 0.0f;
@@ -102,7 +102,7 @@ Vec3s veil_light(const Billboards& billboards, const Light& light, const Packet&
 
 using Sixteen = std::array<float, 16>;
 
-// What a thread sums for one light, and keeps from packet to packet: plain floats, of 16 rays side by side.
+// A thread's sums for one light, reused from packet to packet: plain floats, for 16 rays each.
 struct LightSum {
     Sixteen cards[3]{}, brightest{};
 };
@@ -111,7 +111,7 @@ HWY_INLINE Vec3s loaded(const Sixteen (&from)[3]) {
     return {load(from[0].data()), load(from[1].data()), load(from[2].data())};
 }
 
-// Adds what rays see of a card to its light's sum; returns how much of the card they see.
+// Adds a card's radiance along the rays to its light's sum; returns the mask factor of each ray.
 HWY_INLINE Floats draw(const Billboards& billboards, const CardQuad& quad, const Packet& packet, LightSum& sum) {
     const OnCard on = meet(packet, quad);
     if (!any(on.met)) return 0.0f;
@@ -128,8 +128,7 @@ HWY_INLINE Floats draw(const Billboards& billboards, const CardQuad& quad, const
     return share;
 }
 
-// All that one light gives, per unit of its intensity. However many cards lie over each other, it is at most twice as
-// bright as its brightest beam.
+// Total radiance of one light, per unit of its intensity. Overlapping cards are clamped to twice the brightest beam.
 HWY_INLINE Vec3s whole_light(const Billboards& billboards, size_t index, const LightSum& sum, const Packet& packet) {
     const Vec3s cards = loaded(sum.cards);
     const Floats bound = load(sum.brightest.data()) * (2 * std::max(billboards.settings.brightness, 1.0f));

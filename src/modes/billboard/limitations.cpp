@@ -14,7 +14,7 @@
 
 namespace tyndall {
 namespace {
-// Where the camera sees a card from: inside it, or along its beam.
+// Reports a camera inside a card, or looking along its beam.
 void add_card(const BeamCard& card, vec3 camera, Limitations& limitations) {
     constexpr float edge_on = 0.94f; // cosine
     if (off_axis(card, camera) < 1)

@@ -1,4 +1,4 @@
-// How beam cards are off.
+// Limitations of billboard.
 #pragma once
 #include "modes/limitation.h"
 

@@ -12,7 +12,8 @@
 
 namespace tyndall {
 namespace {
-// Axes of the ellipse with the second moments of the cells' places across `axis`; half widths of an even ellipse.
+// Fits an ellipse across `axis` to the second moments of the cells' positions; half widths are those of a uniform
+// ellipse.
 void fit_ellipse(const LightView& view, const std::vector<int>& cells, vec3 center, vec3 axis, BeamCard& card,
                  vec2& half) {
     vec3 u, v;
@@ -50,7 +51,7 @@ BeamCard card_of(const Openings& openings, const std::vector<int>& opening) {
     const Light& light = *view.light;
     const bool sun = is_distant(light);
     const vec3 axis = sun ? light.direction : glm::normalize(place), center = place / count;
-    // The beam begins where the surfaces around the opening are; cells of gaps in the open begin there themselves.
+    // The beam starts at the surfaces around the opening; cells of gaps in the open already start there.
     const float fog = static_cast<float>(from / count), end = static_cast<float>(to / count);
     float start = fog;
     if (edges > 0 && !(openings.open > 0)) start = std::max(start, static_cast<float>(edge / edges));
@@ -72,7 +73,7 @@ BeamCard cone_card(const LightView& view, const std::vector<Cell>& cells) {
     double sum = 0, count = 0;
     for (const Cell& cell : cells)
         if (cell.hit > 0) sum += cell.to, ++count;
-    // KHR's edge, squared, is about half bright in the middle between inner and outer cone.
+    // A half angle between inner and outer cone, within the squared falloff of KHR_lights_punctual.
     const float length = static_cast<float>(sum / std::max(count, 1.0));
     const float half = std::tan(std::min(0.3f * light.inner_cone + 0.7f * light.outer_cone, 1.4f));
     make_frame(light.direction, card.across[0], card.across[1]);
@@ -142,7 +143,7 @@ PlacedCards placed(const Snapshot& snapshot, const BillboardSettings& settings) 
     return result;
 }
 
-// All that cards depend on: the surfaces, where lights and fog are, and how to search.
+// Everything that cards depend on: surfaces, positions of lights and fog, and search settings.
 CacheKey card_key(const Snapshot& snapshot, const BillboardSettings& settings) {
     CacheKey key;
     key.add(snapshot.occluders).add(snapshot.bounds).add(snapshot.extent).add(snapshot.lights.size());

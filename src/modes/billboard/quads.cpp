@@ -1,4 +1,4 @@
-// Beam cards as the camera sees them.
+// Quads of beam cards for the current camera.
 #include "modes/billboard/billboard.h"
 #include "modes/billboard/settings.h"
 
@@ -26,7 +26,7 @@ CardQuad quad_of(const BeamCard& card, int index) {
     return quad;
 }
 
-// Lays the quad into the plane through the beam's middle with this normal.
+// Places the quad in the plane through the beam's center with this normal.
 void lay(const BeamCard& card, vec3 normal, CardQuad& quad) {
     const vec3 middle = 0.5f * (card.from + card.to);
     const auto onto = [&](vec3 point) { return point - glm::dot(point - middle, normal) * normal; };
@@ -58,7 +58,7 @@ void add_quads(const BeamCard& card, int index, const Camera& camera, CardFacing
     if (glm::length(normal) > 1e-4f) add(glm::normalize(normal));
 }
 
-// The quad as one of its group: edges are planes through the eye, counted positive on the quad's side.
+// Adds the quad to its group: edges are planes through the eye, positive on the quad's side.
 void join_group(const CardQuad& quad, const Camera& camera, int place, CardGroup& group) {
     dvec3 corners[4];
     group.nearest[place] = infinity;
@@ -109,7 +109,7 @@ Billboards make_billboards(const View& view, const Snapshot& snapshot, const Set
     billboards.pixel = height / static_cast<float>(std::max(view.size.y, 1));
     for (size_t i = 0; i < cards.size(); ++i) {
         const BeamCard& card = cards[i];
-        // Each card swings at its own pace.
+        // Each card's brightness sways with its own frequency and phase.
         const float pace = 0.08f + 0.17f * to_unit(hash(card.seed, 1u)), phase = to_unit(hash(card.seed, 2u));
         const float swing = 0.5f + 0.5f * std::sin(2 * pi * (pace * billboards.seconds + phase));
         const float inside = smooth(0.5f, 4, off_axis(card, view.camera.position));

@@ -1,4 +1,4 @@
-// Which beam cards a packet of rays may meet (see base/simd/simd.h for how such files are compiled).
+// Culling of beam cards that no ray of a packet can hit (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_BILLBOARD_REACH_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_BILLBOARD_REACH_SIMD_H
 #undef TYNDALL_MODES_BILLBOARD_REACH_SIMD_H
@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// The packet's rays as CardGroup counts them: how far they spread, and the planar depth of the farthest end.
+// Bounds of the packet's rays in the coordinates of CardGroup, and the planar depth of the farthest end.
 struct Spread {
     vec3 center, half;
     float farthest;
@@ -29,14 +29,14 @@ HWY_INLINE Spread spread_of(const Packet& packet, const Camera& camera) {
     for (int axis = 0; axis < 3; ++axis) {
         const float low = least(axes[axis]), high = most(axes[axis]);
         spread.center[axis] = 0.5f * (low + high);
-        // A little wider, for rounding.
+        // Padded for rounding errors.
         spread.half[axis] = 0.5f * (high - low) + 1e-6f * std::max(std::abs(low), std::abs(high));
     }
     spread.farthest = most(fused(forward, packet.t_max, dot(place, splat(camera.forward))));
     return spread;
 }
 
-// Quads of a group that some ray of the packet may meet, one bit for each.
+// Quads of a group that some ray of the packet may hit, as a bit mask.
 HWY_INLINE uint32_t within_reach(const CardGroup& group, const Spread& spread) {
     Mask16 seen = load(group.nearest) <= spread.farthest;
     for (const auto& edge : group.edges) {

@@ -5,13 +5,13 @@
 
 namespace tyndall {
 namespace {
-constexpr float long_way = 0.2f;     // share of the longest way through fog that counts as lit
-constexpr float large_share = 0.03f; // of the grid's cells: larger openings are cut up
-constexpr float open_share = 0.3f;   // of a sun's grid: a larger opening is the open air, its shafts come by gaps
-constexpr float long_gap = 0.025f;   // of the rays: the least way behind a gap that has a shaft
-constexpr float gap_share = 0.001f;  // of the grid's cells: larger gaps are cut up
+constexpr float long_way = 0.2f;     // fraction of the longest path through fog above which a cell is lit
+constexpr float large_share = 0.03f; // fraction of the grid's cells: larger openings are split
+constexpr float open_share = 0.3f;   // fraction of a sun's grid: a larger opening is open air, with shafts from gaps
+constexpr float long_gap = 0.025f;   // fraction of the rays' length: minimum depth behind a gap that makes a shaft
+constexpr float gap_share = 0.001f;  // fraction of the grid's cells: larger gaps are split
 
-// Numbers the connected cells with a long way through fog; returns the cells of each opening.
+// Labels connected components of lit cells; returns the cells of each opening.
 std::vector<std::vector<int>> openings(const LightView& view, std::vector<Cell>& cells, float longest) {
     std::vector<std::vector<int>> found;
     for (Cell& cell : cells) cell.opening = unlit;
@@ -39,7 +39,7 @@ std::vector<std::vector<int>> openings(const LightView& view, std::vector<Cell>&
     return openings(view, cells, longest);
 }
 
-// Smallest or largest value within `radius` cells of the same row.
+// Running minimum or maximum along rows, within `radius` cells.
 std::vector<float> spread(const std::vector<float>& values, int n, int radius, bool smallest) {
     std::vector<float> result = values;
     for (int i = 0; i < n * n; ++i) {
@@ -50,13 +50,13 @@ std::vector<float> spread(const std::vector<float>& values, int n, int radius, b
     return result;
 }
 
-// In the open, the cells between surfaces that stand next to each other before them: where the depths' morphological
-// closing is nearer than they are. Their light begins at those surfaces.
+// For a sun in the open, cells in gaps between neighboring surfaces: where a morphological closing of the surfaces
+// (minimum, then maximum of depth) is nearer than the cell's own depth. Their light starts at those surfaces.
 std::vector<std::vector<int>> gaps(const LightView& view, std::vector<Cell>& cells) {
     std::vector<float> depth;
     for (const Cell& cell : cells) depth.push_back(cell.hit);
     const int radius = std::max(view.n / 10, 1);
-    // Row by row: level ground is no surface beside a gap.
+    // Along rows only, so that level ground does not count as a surface beside a gap.
     const std::vector<float> closed = spread(spread(depth, view.n, radius, true), view.n, radius, false);
     for (size_t i = 0; i < cells.size(); ++i) {
         const bool between = cells[i].hit - closed[i] > long_gap * view.reach;
@@ -65,7 +65,7 @@ std::vector<std::vector<int>> gaps(const LightView& view, std::vector<Cell>& cel
     return openings(view, cells, long_gap * view.reach / long_way);
 }
 
-// A sun's grid again over what the first one found lit: thin openings in a large scene get more rays.
+// A sun's grid, refined around the lit cells of the first one: thin openings in a large scene get more rays.
 LightView closer_view(const LightView& view, const std::vector<std::vector<int>>& found, int rays) {
     const int n = view.n;
     ivec2 low(n), high(-1);
@@ -96,7 +96,7 @@ void look(const Snapshot& snapshot, Openings& into) {
 }
 }
 
-// Lloyd's k-means from far-apart seeds.
+// Lloyd's k-means, initialized with farthest points.
 std::vector<std::vector<int>> cut(const LightView& view, const std::vector<int>& cells, int count) {
     if (count <= 1) return {cells};
     std::vector<vec3> places;
@@ -129,9 +129,9 @@ std::vector<std::vector<int>> cut(const LightView& view, const std::vector<int>&
 }
 
 Openings find_openings(const Light& light, const Snapshot& snapshot) {
-    // A sun's first look only finds out where to look closer.
+    // For a sun, the first pass only finds the region to refine.
     const bool sun = is_distant(light);
-    constexpr int rays = 128; // across the light's view that looks for openings
+    constexpr int rays = 128; // across the light's grid
     const int first = sun ? (rays + 1) / 2 : rays;
     Openings result{light_view(light, snapshot, first, false), {}, {}};
     look(snapshot, result);

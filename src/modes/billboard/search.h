@@ -13,33 +13,33 @@ struct LightView {
     float reach = 0;                 // length of the rays
 
     Ray ray(int cell) const;
-    vec3 place(int cell) const;                    // of a cell: on the grid's plane (sun), on the unit sphere
+    vec3 place(int cell) const;                    // of a cell: on the grid's plane (sun) or the unit sphere
     int neighbour(int cell, int dx, int dy) const; // -1 = none
-    float cell_size() const;                       // metres (sun), radians
+    float cell_size() const;                       // meters (sun) or radians
 };
-// `level`: rows of a sun's grid follow the ground.
+// `level`: rows of a sun's grid are horizontal.
 LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool level);
 
 inline constexpr int unlit = -1;
 
-// What a ray of the grid meets. Outside a spot's cone all is 0.
+// What a ray of the grid hits; all 0 outside a spot's cone.
 struct Cell {
     float hit = 0;          // distance to the first surface
-    float from = 0, to = 0; // first and last fog before it
+    float from = 0, to = 0; // start and end of the fog in front of it
     int opening = unlit;
 };
 std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot);
 
-// What was found, the cells of each opening in ascending order.
+// The openings found, each with its cells in ascending order.
 struct Openings {
     LightView view;
     std::vector<Cell> cells;
     std::vector<std::vector<int>> found;
-    float large = 0; // number of cells above which an opening is cut up
-    float open = 0;  // lit share of the grid of a sun in the open
+    float large = 0; // number of cells above which an opening is split
+    float open = 0;  // lit fraction of a sun's grid in the open, else 0
 };
 Openings find_openings(const Light& light, const Snapshot& snapshot);
 
-// Cuts an opening into `count` parts of like size.
+// Splits an opening into at most `count` clusters of similar extent.
 std::vector<std::vector<int>> cut(const LightView& view, const std::vector<int>& cells, int count);
 }

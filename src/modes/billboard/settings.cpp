@@ -1,4 +1,4 @@
-// Settings of the beam cards: rows, presets, and the ladder from quick to careful.
+// Settings of billboard: rows, and the ladder from fastest to most accurate.
 #include "modes/billboard/settings.h"
 #include "modes/mode.h"
 #include "modes/settings_rows.h"

@@ -1,4 +1,4 @@
-// What a light sees.
+// The view from a light, and its rays' first hits.
 #include "modes/billboard/search.h"
 
 #include "base/parallel.h"
@@ -16,7 +16,7 @@ vec3 octahedral_direction(float x, float y) {
     return glm::normalize(d);
 }
 
-// What ends the beams of a light: what shadows it, or all surfaces.
+// Surfaces that end a light's beams: those that shadow it, or all surfaces for a light without shadows.
 const Occluders* ends_of(const Light& light, const Snapshot& snapshot) {
     return (light.shadows ? shadow_casters(light, snapshot) : snapshot.occluders).get();
 }
@@ -69,7 +69,7 @@ LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool l
     vec3 u, v;
     make_frame(light.direction, u, v);
     if (level && std::abs(light.direction.y) < 0.99f) {
-        u = glm::normalize(glm::cross(vec3(0, 1, 0), light.direction)); // rows of the grid follow the ground
+        u = glm::normalize(glm::cross(vec3(0, 1, 0), light.direction)); // horizontal
         v = glm::cross(light.direction, u);
     }
     if (has_cone(light)) {

@@ -1,4 +1,4 @@
-// Analytic volume lights: what of homogeneous fog each light reaches, in closed form and without shadows.
+// Analytic volume lights: single scattering of each light in homogeneous fog, in closed form and without shadows.
 #include "modes/cone/cone.h"
 #include "modes/cone/limitations.h"
 #include "modes/cone/settings.h"
@@ -24,8 +24,8 @@ Medium seen_from(const Medium& medium, dvec3 anchor) {
     return moved;
 }
 
-// The faces of a box, along one axis, that ways to the light can leave it by: the ones that face the light, or of
-// points outside the box either.
+// Coordinates of a box's faces along one axis through which rays to the light can leave it: those that face the light
+// or, with `both` (for points outside the box too), either face.
 std::vector<double> faces(const Medium& medium, int axis, double towards_low, double towards_high, bool both) {
     const double low = medium.density.bounds.low[axis], high = medium.density.bounds.high[axis];
     std::vector<double> result;
@@ -38,7 +38,7 @@ std::vector<double> faces(const Medium& medium, int axis, double towards_low, do
 void add_edge_planes(const Medium& medium, const Light& light, bool both, std::vector<vec4>& planes) {
     const dmat4 m(medium.density.world_to_local);
     const bool sun = is_distant(light);
-    const dvec3 apex(m[3]), travel = glm::dmat3(m) * dvec3(light.direction); // local; the light is the anchor
+    const dvec3 apex(m[3]), travel = glm::dmat3(m) * dvec3(light.direction); // local space; the light is the anchor
     const auto faces_of = [&](int axis) {
         const double low = medium.density.bounds.low[axis], high = medium.density.bounds.high[axis];
         if (sun) return faces(medium, axis, travel[axis], -travel[axis], both);
@@ -48,7 +48,7 @@ void add_edge_planes(const Medium& medium, const Light& light, bool both, std::v
         for (const double fi : faces_of(i))
             for (int j = i + 1; j < 3; ++j)
                 for (const double fj : faces_of(j)) {
-                    // n·(q - edge) = 0 with n across both the edge and the way to the light.
+                    // n·(q - edge) = 0, with n perpendicular to the edge and to the direction to the light.
                     const double ni = sun ? travel[j] : fj - apex[j], nj = sun ? -travel[i] : apex[i] - fi;
                     const dvec3 row_i(m[0][i], m[1][i], m[2][i]), row_j(m[0][j], m[1][j], m[2][j]);
                     const dvec3 normal = ni * row_i + nj * row_j;
@@ -66,7 +66,7 @@ bool endless(const Medium& medium) {
     return glm::all(glm::isinf(medium.density.bounds.low)) && glm::all(glm::isinf(medium.density.bounds.high));
 }
 
-// `light` null: for transmittance and glow alone.
+// `light` null: for transmittance, emission and ambient light only.
 AnchoredFog anchored(std::span<const Medium> media, dvec3 anchor, const Light* light) {
     AnchoredFog fog;
     fog.anchor = anchor;

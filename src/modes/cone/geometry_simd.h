@@ -1,5 +1,5 @@
-// Geometry of sixteen rays and a cone (see base/simd/simd.h for how such files are compiled). Everything is measured
-// from the point of the ray next to the light, in the plane of ray and light, where the cone is a wedge.
+// Geometry of 16 rays and a cone (see base/simd/simd.h for how such files are compiled). Distances along a ray are
+// relative to its closest point to the light; in the plane of ray and light, the cone is a wedge.
 #if defined(TYNDALL_MODES_CONE_GEOMETRY_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_CONE_GEOMETRY_SIMD_H
 #undef TYNDALL_MODES_CONE_GEOMETRY_SIMD_H
@@ -11,7 +11,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// a·b - c·d within two roundings of the result, whatever cancels (Kahan).
+// a·b - c·d to within two rounding errors of the result, despite cancellation (Kahan).
 HWY_INLINE Floats difference_of_products(const Floats& a, const Floats& b, const Floats& c, const Floats& d) {
     const Floats product = c * d;
     return fused(a, b, -product) - fused(c, d, -product);
@@ -22,7 +22,7 @@ HWY_INLINE Vec3s cross(const Vec3s& a, const Vec3s& b) {
             difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-// Angle of (x, y), both 0 or more, from the x axis: the half angle's Taylor series.
+// Angle of (x, y) to the x axis, for x, y >= 0: Taylor series for the half angle.
 HWY_INLINE Floats angle_of(const Floats& y, const Floats& x) {
     const Mask16 steep = y > x;
     const Floats z = min(x, y) / max(max(x, y), 1e-37f);
@@ -43,19 +43,20 @@ HWY_INLINE void cosine_and_sinc(const Floats& u, Floats& cosine, Floats& sinc) {
     cosine = fused(fused(c, u2, -0.5f), u2, 1.0f), sinc = fused(s, u2, 1.0f);
 }
 
-// A ray as a light at the origin sees it: nearest point, distance there, and the light's axis along that point's
-// direction, along the ray and across both. `rest` is what the floats of the origin lose: next to a light it matters.
+// Rays relative to a light at the origin: the closest point, its distance, and the components of the light's axis in
+// the direction of that point, along the ray, and across both. `rest`: what rounding the origin to float loses, which
+// matters close to a light.
 struct SeenRays {
-    Floats nearest, distance, squared; // t of the nearest point; how far it is, and the square
+    Floats nearest, distance, squared; // t of the closest point; its distance, and the square
     Floats axis_out, axis_along, axis_across;
-    Vec3s out; // unit, towards the nearest point
+    Vec3s out; // unit, towards the closest point
 };
 
 HWY_INLINE SeenRays seen_rays(const Vec3s& origin, const Vec3s& rest, const Vec3s& direction, vec3 axis) {
     SeenRays seen;
     const Vec3s normal = cross(origin, direction) + cross(rest, direction);
     const Floats squared = dot(normal, normal);
-    const Mask16 through = squared < 1e-30f; // the light: all directions out are the same
+    const Mask16 through = squared < 1e-30f; // the ray passes through the light: any `out` will do
     const Floats inverse = 1.0f / sqrt(select(through, 1.0f, squared));
     seen.nearest = -dot(origin, direction);
     seen.squared = zero_unless(!through, squared), seen.distance = sqrt(seen.squared);
@@ -67,8 +68,8 @@ HWY_INLINE SeenRays seen_rays(const Vec3s& origin, const Vec3s& rest, const Vec3
     return seen;
 }
 
-// Where the rays are within a half angle 0..π/2 of the axis: the wedge's borders, turned from the projected axis by
-// ω with cos ω = cosine / cos(angle between axis and plane), meet the ray at distance · tan.
+// Interval of the rays within a half angle 0..π/2 of the axis: the wedge's sides, at ±ω from the projected axis with
+// cos ω = cosine / cos(angle between axis and plane), meet the ray at distance · tan.
 HWY_INLINE Interval<Floats> inside_wedge(const SeenRays& seen, float cosine, float sine) {
     const Floats across = abs(seen.axis_across), room = (sine - across) * (sine + across);
     const Floats turn = sqrt(max(room, 0.0f));
@@ -77,19 +78,19 @@ HWY_INLINE Interval<Floats> inside_wedge(const SeenRays& seen, float cosine, flo
     const Floats high_x = fused(seen.axis_out, cosine, -(seen.axis_along * turn));
     const Floats high_y = fused(seen.axis_along, cosine, seen.axis_out * turn);
     const Mask16 low_ahead = low_x > 0.0f, high_ahead = high_x > 0.0f;
-    // Of a half space the ray runs parallel to, neither border is ahead.
+    // For a half-space (π/2) parallel to the ray, neither side is ahead.
     const Mask16 met = (room > 0.0f) & (low_ahead | high_ahead | (seen.axis_out > 0.0f));
     const Floats low = select(low_ahead, seen.distance * low_y / select(low_ahead, low_x, 1.0f), -infinity);
     const Floats high = select(high_ahead, seen.distance * high_y / select(high_ahead, high_x, 1.0f), infinity);
     return {select(met, low, 0.0f), select(met, high, 0.0f)};
 }
 
-// Nodes of a piece low..high (from the nearest point, not across it) that are even in the angle θ seen from the light.
-// With far the end of larger |s|, u = θ(far) - θ: s = (far cos u - d² sin(u)/d) / (cos u + far sin(u)/d), which holds
-// for d = 0 too.
+// Nodes on a segment low..high (relative to the closest point, which is not inside), uniform in the angle θ seen from
+// the light. With far the end of larger |s|, u = θ(far) - θ: s = (far cos u - d² sin(u)/d) / (cos u + far sin(u)/d),
+// which holds for d = 0 too.
 struct AnglePiece {
     Floats sign, near, far, squared;
-    Floats angle, per_distance; // the whole angle, and over the distance: ∫ ds/r²
+    Floats angle, per_distance; // total angle, and angle / distance: ∫ ds/r²
 
     HWY_INLINE AnglePiece(const Interval<Floats>& piece, const SeenRays& seen) : squared(seen.squared) {
         sign = select(piece.low + piece.high < 0.0f, -1.0f, 1.0f);
@@ -106,7 +107,7 @@ struct AnglePiece {
         const Floats sine = per_distance * share * sinc;
         return sign * fused(sine, -squared, far * cosine) / fused(sine, far, cosine);
     }
-    // Instead, closer together next to the nearest point: ds = 3 share² · length · dshare.
+    // Alternative nodes, denser near the closest point: ds = 3 share² · length · dshare.
     HWY_INLINE Floats cubic(float share) const { return sign * fused(far - near, share * share * share, near); }
 };
 }

@@ -10,7 +10,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Sun (light not null), or emission and ambient light, even in t.
+// A sun (light not null), or emission and ambient light: integrands without a 1/r² peak, integrated in t.
 struct EvenLight {
     const Packet& packet;
     const ConeLight* light;
@@ -28,8 +28,8 @@ bool is_linear(const Packet& packet) {
     return std::ranges::all_of(packet.fog.media, homogeneous) && packet.cone.style.range >= no_range;
 }
 
-// ∫ e^-τ dt in closed form. Two places inside the piece tell τ: at its ends rounding decides on which side of a face
-// they lie.
+// ∫ e^-τ dt in closed form. τ is evaluated at two points inside the segment: at its ends, rounding would decide on
+// which side of a face they lie.
 void add_linear_piece(const EvenLight& even, const Interval<Floats>& piece) {
     const Floats length = piece.high - piece.low;
     const Floats early = even.depth_at(fused(length, 0.25f, piece.low));
@@ -73,7 +73,7 @@ bool add_even(Packet& packet, const ConeLight* light) {
     return true;
 }
 
-// The light of the sums, of colours per medium.
+// Sum over media of scratch.sums times `color`.
 template<class Color> Vec3s light_of_sums(const Packet& packet, const Color& color) {
     Vec3s light = splat(vec3(0));
     for (size_t m = 0; m < packet.media(); ++m)
@@ -91,7 +91,7 @@ float brightest(const std::vector<vec3>& colors) {
     return result;
 }
 
-// Emission and ambient light: of one medium ∫ σ e^-τ dt = 1 - e^-τ, whatever its density.
+// Emission and ambient light. For a single medium ∫ σ e^-τ dt = 1 - e^-τ, whatever its density.
 Vec3s glow_light(Packet& packet, const Floats& depth, const RayBatch& batch) {
     const Cone& cone = packet.cone;
     if (!(brightest(cone.ambient) > 0) && !(brightest(cone.emission) > 0)) return splat(vec3(0));
@@ -110,7 +110,7 @@ Vec3s glow_light(Packet& packet, const Floats& depth, const RayBatch& batch) {
     return light;
 }
 
-// Light of one light, scattered once; false where there is none. Colours of a gobo are integrated one by one.
+// Single scattering of one light; false if it contributes nothing. Color channels of a gobo are integrated one by one.
 bool add_light(Packet& packet, const ConeLight& light, Vec3s& added) {
     const vec3 intensity = light.light.intensity * light.light.volume_scale;
     const bool colors = light.light.filter && has_colors(*light.light.filter);
@@ -129,7 +129,7 @@ bool add_light(Packet& packet, const ConeLight& light, Vec3s& added) {
     return some;
 }
 
-// Half for each kind of thing that is not as the scene has it: fog drawn even, light without its shadows.
+// Halved for each approximation: grids at their mean density, light without its shadows.
 float validity_of(const Cone& cone, const Ray& ray, bool unshadowed) {
     float validity = unshadowed ? 0.5f : 1.0f;
     for (const Box& grid : cone.grids)

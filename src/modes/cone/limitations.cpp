@@ -17,7 +17,7 @@
 
 namespace tyndall {
 namespace {
-// Whether surfaces keep a light from fog that the picture shows.
+// Whether surfaces shadow fog that is in view.
 bool is_shadowed(const View& view, const Snapshot& snapshot, const Light& light) {
     constexpr int points = 16; // on each ray
     for (Ray& ray : probing_rays(view, snapshot)) {

@@ -1,4 +1,4 @@
-// How the closed forms are off.
+// Limitations of cone.
 #pragma once
 #include "modes/limitation.h"
 

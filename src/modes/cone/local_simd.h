@@ -1,5 +1,5 @@
-// Spots and point lights along sixteen rays, integrated in the angle seen from the light (see base/simd/simd.h for how
-// such files are compiled).
+// Spots and point lights along 16 rays, integrated in the angle seen from the light (see base/simd/simd.h for how such
+// files are compiled).
 #if defined(TYNDALL_MODES_CONE_LOCAL_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_CONE_LOCAL_SIMD_H
 #undef TYNDALL_MODES_CONE_LOCAL_SIMD_H
@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Strength of a spot at sixteen angles from its axis.
+// Spot falloff at 16 angles from its axis.
 HWY_INLINE Floats edge(const Packet& packet, const ConeEdges& edges, const Floats& sine2, const Floats& cosine) {
     if (packet.cone.settings.edge == ConeEdge::soft) {
         const Floats angle = angle_of(sqrt(sine2), max(cosine, 0.0f));
@@ -27,7 +27,7 @@ HWY_INLINE Floats edge(const Packet& packet, const ConeEdges& edges, const Float
     return x * x;
 }
 
-// Noise that rises through the light, 1 on average.
+// Noise factor that drifts upward, 1 on average.
 Floats dust(const Cone& cone, const Vec3s& world) {
     const FractalNoise noise{3, cone.settings.noise_size, 2, 0.5f, 77, 0, false};
     Lanes x, y, z, values;
@@ -37,7 +37,8 @@ Floats dust(const Cone& cone, const Vec3s& world) {
     return fused(swing, cone.settings.noise, 1.0f);
 }
 
-// What a local light sends to s, less the inverse square: window and edge, and r² where the attenuation is another.
+// Intensity factor of a local light at s, without the inverse square: range window or linear attenuation, and spot
+// falloff.
 HWY_INLINE Floats strength(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Floats& s,
                            const Floats& distance, const Floats& inverse) {
     Floats amount = 1.0f;
@@ -55,7 +56,7 @@ HWY_INLINE Floats strength(const Packet& packet, const ConeLight& light, const S
     return amount;
 }
 
-// The stretch of the rays that a local light reaches, from the nearest point.
+// Interval of the rays that a local light reaches, relative to the closest point.
 Interval<Floats> reached(const Packet& packet, const ConeLight& light, const SeenRays& seen) {
     Interval<Floats> stretch{packet.stretch.low - seen.nearest, packet.stretch.high - seen.nearest};
     const auto cut = [&](const Interval<Floats>& by) HWY_ATTR {
@@ -74,14 +75,14 @@ Interval<Floats> reached(const Packet& packet, const ConeLight& light, const See
         const Floats along = seen.axis_along, start = light.near_plane - seen.distance * seen.axis_out;
         const Mask16 level = abs(along) < 1e-20f;
         const Floats s = start / select(level, 1.0f, along);
-        const Floats free = select(start > 0.0f, infinity, -infinity); // level rays: all or nothing
+        const Floats free = select(start > 0.0f, infinity, -infinity); // rays parallel to the plane: all or nothing
         cut({select(level, free, select(along > 0.0f, s, -infinity)), select(along < 0.0f, s, infinity)});
     }
     return stretch;
 }
 
-// Far from the light, compared with how near it the ray passes, metres are packed into little angle: what falls or
-// grows by e per metre is an edge there. Such stretches are cut where that has happened a little, once, and four times.
+// Where a ray is much farther from the light than its closest point, a small angle spans many meters, and exponential
+// decay looks like an edge in θ. Such segments are split after 1/16, 1/4, 1 and 4 decay lengths.
 void add_decay_breaks(const Packet& packet, const SeenRays& seen, const Interval<Floats>& stretch) {
     Floats rate = packet.fog.extinction();
     for (const Medium& medium : packet.fog.media)
@@ -92,12 +93,13 @@ void add_decay_breaks(const Packet& packet, const SeenRays& seen, const Interval
         const Floats at = behind + share * scale, mirrored = before - share * scale;
         const Mask16 packed = (stretch.high > stretch.low) & (share * scale > seen.distance);
         if (any(packed & (at < stretch.high))) add_break(packet, at);
-        // Before the light the two ways together stay as long in fog that is around all.
+        // Before the closest point, view and light paths together have a nearly constant length in `direct` fog: no
+        // decay.
         if (!packet.fog.direct && any(packed & (mirrored > stretch.low))) add_break(packet, mirrored);
     }
 }
 
-// Equal angles of what the rays see of a light with a filter, which varies in all of them.
+// Splits rays at equal angles seen from a filtered light, whose intensity varies throughout.
 void add_filter_breaks(const Packet& packet, const SeenRays& seen, const Interval<Floats>& stretch) {
     const Floats away = max(seen.distance, 1e-12f);
     const Floats from = atan(stretch.low / away), to = atan(stretch.high / away);
@@ -121,13 +123,13 @@ void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRa
     add_decay_breaks(packet, seen, stretch);
 }
 
-// What a light's filter lets through of the current channel. Not in the loop of lights that have none.
+// Transmission of a light's filter in the current channel. Not inlined, to keep the loop of unfiltered lights small.
 HWY_NOINLINE Floats filter_factor(const Packet& packet, const ConeLight& light, const Vec3s& point,
                                   const Floats& distance) {
     return filter_channel(*light.light.filter, point * (1.0f / distance), packet.channel, light.filter_level);
 }
 
-// Light of a local light at the nodes of one piece.
+// Adds a local light's contribution at the nodes of one segment.
 void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& seen, const Interval<Floats>& piece,
                int count) {
     const AnglePiece angles(piece, seen);

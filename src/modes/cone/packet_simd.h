@@ -1,5 +1,5 @@
-// Sixteen rays in homogeneous fog: how far it reaches, how deep it is, and where it has kinks (see base/simd/simd.h for
-// how such files are compiled).
+// 16 rays in homogeneous fog: its extent, its optical depth, and kinks of the integrand (see base/simd/simd.h for how
+// such files are compiled).
 #if defined(TYNDALL_MODES_CONE_PACKET_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_CONE_PACKET_SIMD_H
 #undef TYNDALL_MODES_CONE_PACKET_SIMD_H
@@ -19,26 +19,26 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 using Lanes = std::array<float, 16>;
-constexpr float no_range = StyleSettings{}.range; // of the style: the fog's light goes on for ever
+constexpr float no_range = StyleSettings{}.range; // style.range without a limit
 
-// Memory that a thread keeps from packet to packet. Plain floats: containers know nothing of vector registers.
+// Memory that a thread reuses from packet to packet: plain floats, as containers cannot hold vector registers.
 struct Scratch {
     std::vector<Lanes> from, to; // where the rays enter and leave each medium
-    std::vector<Lanes> sums;     // per medium: its share of the light
+    std::vector<Lanes> sums;     // per medium: the light it scatters or emits
     std::vector<Lanes> breaks;   // where the integrand has a kink
     Lanes shares;                // of optical depth, for statistics
 };
 
-// The rays among the fog of one light.
+// The rays relative to one light's fog.
 struct Packet {
     const Cone& cone;
     const AnchoredFog& fog;
-    Vec3s origin, direction; // from the fog's anchor
-    Vec3s rest;              // of the origin, what floats lose
-    Floats t_max, before;    // length, and the way from the eye to the origin
+    Vec3s origin, direction; // relative to the fog's anchor
+    Vec3s rest;              // what rounding the origin to float loses
+    Floats t_max, before;    // length, and distance from the eye to the origin
     Scratch& scratch;
     Interval<Floats> stretch; // from first to last fog
-    int channel = 0;          // of a light's gobo
+    int channel = 0;          // color channel, for a light with a colored gobo
 
     HWY_INLINE size_t media() const { return fog.media.size(); }
     HWY_INLINE Vec3s at(const Floats& t) const { return fused(direction, t, origin); }
@@ -98,7 +98,7 @@ HWY_INLINE Floats view_depth(const Packet& packet, const Floats& t) {
     return sum;
 }
 
-// Extinction of a medium at t, inside a piece that no border of it divides.
+// Extinction of a medium at t, in a segment that does not cross the medium's bounds.
 HWY_INLINE Floats extinction(const Packet& packet, size_t m, const Floats& t) {
     const Medium& medium = packet.fog.media[m];
     const Mask16 inside = (t >= load(packet.scratch.from[m].data())) & (t <= load(packet.scratch.to[m].data()));
@@ -122,14 +122,14 @@ HWY_INLINE Floats light_depth(const Packet& packet, const ConeLight& light, cons
     return sum * scale;
 }
 
-// Share of the fog's light that style.range leaves.
+// Fraction of the fog's light that style.range leaves.
 HWY_INLINE Floats fade(const Packet& packet, const Floats& t) {
     const float range = packet.cone.style.range;
     if (range >= no_range) return 1.0f;
     return max(min((range - (t + packet.before)) * (1 / (0.2f * range)), 1.0f), 0.0f);
 }
 
-// Adds `amount` of light from a place to the sums of the media there. Without a light: of emission and ambient light.
+// Adds `amount` of light at t to the sums of the media there; without a light, for emission and ambient light.
 HWY_INLINE void add_node(const Packet& packet, const Floats& t, const Floats& amount, const Floats& cosine,
                          bool has_light) {
     for (size_t m = 0; m < packet.media(); ++m) {
@@ -146,8 +146,8 @@ void add_break(const Packet& packet, const Floats& t) {
     store(t, lanes.data());
 }
 
-// Ends of media, kinks of height fog and of the ways to the light, and the fade of the style; `start` = t of the
-// coordinate's zero.
+// Adds breaks at bounds of media, at kinks of height fog and of paths to the light, and where the style's fade starts;
+// `start`: t at the origin of the breaks' coordinate.
 void add_fog_breaks(const Packet& packet, const Floats& start) {
     for (size_t m = 0; packet.media() > 1 && m < packet.media(); ++m) {
         add_break(packet, load(packet.scratch.from[m].data()) - start);
@@ -162,7 +162,7 @@ void add_fog_breaks(const Packet& packet, const Floats& start) {
     if (packet.cone.style.range < no_range) add_break(packet, 0.8f * packet.cone.style.range - packet.before - start);
 }
 
-// Brings the breaks into ascending order in every lane and into the stretch, whose ends join them.
+// Clamps the breaks to the interval, adds its ends, and sorts them in each lane.
 void sort_breaks(const Packet& packet, const Interval<Floats>& stretch) {
     std::vector<Lanes>& breaks = packet.scratch.breaks;
     add_break(packet, stretch.low), add_break(packet, stretch.high);
@@ -176,14 +176,14 @@ void sort_breaks(const Packet& packet, const Interval<Floats>& stretch) {
         }
 }
 
-// How many nodes a piece needs: the more, the wider its angle and the more its optical depth and density change.
+// Number of nodes for a segment: grows with its angle and with the change of optical depth and density.
 int node_count(const Packet& packet, float share, const Floats& change, const Floats& length) {
     Floats amount = change;
     float narrowest = 1;
     for (const Medium& medium : packet.fog.media) {
         if (medium.density.kind == DensityKind::height)
             amount = amount + min(abs(packet.direction.y) * length * (1 / medium.density.height_falloff), 30.0f);
-        const Phase& phase = medium.optics.phase; // of several lobes: cut for the narrow ones
+        const Phase& phase = medium.optics.phase; // with several lobes: rays have breaks for the narrow ones
         narrowest = std::min(narrowest, phase.shape ? wide_lobe : 1 - std::abs(mean_cosine(phase)));
     }
     const float nodes = static_cast<float>(packet.cone.settings.nodes), lobe = std::max(0.4f / narrowest, 1.0f);

@@ -1,4 +1,4 @@
-// Settings of the analytic light cones: rows, presets, and the ladder from quick to careful.
+// Settings of cone: rows, presets, and the ladder from fastest to most accurate.
 #include "modes/cone/settings.h"
 #include "modes/mode.h"
 #include "modes/settings_rows.h"

@@ -1,5 +1,5 @@
-// Fog light cached in froxels (Wronski 2014; Hillaire 2015): filled once per frame, integrated front to back, found
-// again for every camera ray.
+// Fog light cached in froxels (Wronski 2014; Hillaire 2015): filled once per frame, integrated front to back, and
+// interpolated for every camera ray.
 #include "base/parallel.h"
 #include "base/simd/simd.h"
 #include "integrate/lights/field_light.h"
@@ -35,13 +35,13 @@ struct FroxelFrame {
     bool has_history = false;
     int frame = 0;
 
-    // What the light is made of, and which part that is: made when first asked for.
+    // The light's parts, and their indices (see part_count); computed on first use.
     std::once_flag parts_made;
     std::vector<FroxelSums> parts;
     std::vector<size_t> indices;
 };
 
-// The scene as the settings see it. Returns what rays find by themselves.
+// Fills `scene` with the settings applied. Returns the fields that rays integrate by themselves.
 FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
     const TermSettings& terms = settings.terms;
     scene.snapshot = with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), terms)));
@@ -52,7 +52,7 @@ FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings&
     std::vector<const Medium*> bricks;
     for (const Medium& medium : scene.snapshot.media)
         if (medium.density.kind == DensityKind::bricks) bricks.push_back(&medium);
-    // Surfaces need all of the grids; without any, columns are filled where froxels ask for them.
+    // Surfaces need complete grids; without surfaces, columns are filled on demand.
     const bool filled = scene.snapshot.occluders && !scene.snapshot.occluders->empty();
     for (const Light& light : scene.snapshot.lights) {
         scene.depths.push_back(
@@ -67,7 +67,7 @@ FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings&
     return fields;
 }
 
-// The tiles as the pixels of a picture of their own.
+// A camera whose pixels are the grid's tiles.
 Camera tile_camera(const FroxelGrid& grid) {
     Camera camera = grid.camera;
     const float wider = static_cast<float>(grid.size.y * grid.tile) / static_cast<float>(grid.picture.y);
@@ -76,7 +76,8 @@ Camera tile_camera(const FroxelGrid& grid) {
     return camera;
 }
 
-// Which lights rays are to follow themselves. Amortised filling lights few of the froxels anew, beams all of them.
+// Selects the lights that camera rays integrate themselves (beams). None with amortized filling, which relights few
+// froxels per frame: beams would update all of them.
 void set_beams(const FroxelGrid& grid, FroxelScene& scene) {
     if (scene.settings.visibility == FroxelVisibility::intervals)
         scene.lamp_views_fit = has_room_for_views(
@@ -87,13 +88,13 @@ void set_beams(const FroxelGrid& grid, FroxelScene& scene) {
     }
 }
 
-// What exact shadows are found from. Lines see different points of a soft light in frames and samples beyond the first.
+// Prepares exact shadows. In frames and samples beyond the first, lines see different points of a soft light.
 void set_shadows(FroxelFrame& frame, FroxelStatics& statics) {
     FroxelScene& scene = frame.scene;
     const Occluders* occluders = scene.snapshot.occluders.get();
     if (scene.settings.visibility != FroxelVisibility::intervals || !occluders || occluders->empty()) return;
     const bool spread = scene.settings.shadow_rays > 1 || frame.frame > 0;
-    constexpr float margin = 0.5f; // the tiles lie half a tile off where the picture ends within one
+    constexpr float margin = 0.5f; // tiles are up to half a tile off where the image ends inside one
     const size_t lights = scene.snapshot.lights.size();
     scene.views.resize(lights), scene.slices.resize(lights);
     parallel_for(static_cast<int64_t>(lights), [&](int64_t i) {
@@ -110,7 +111,7 @@ void set_shadows(FroxelFrame& frame, FroxelStatics& statics) {
     });
 }
 
-// Lamps whose shadows each ray of the picture finds by itself.
+// Prepares the shadows of lamps that are found per camera ray.
 void set_pixel_shadows(const View& view, FroxelScene& scene) {
     const Occluders* occluders = scene.snapshot.occluders.get();
     if (scene.settings.visibility != FroxelVisibility::intervals || !occluders || occluders->empty()) return;
@@ -124,13 +125,13 @@ void set_pixel_shadows(const View& view, FroxelScene& scene) {
     });
 }
 
-// What the last frame left, at this frame's froxels. What nobody else remembers is taken over as it is.
+// The last frame's light at this frame's froxels; moved instead of copied if nothing else owns it.
 Reprojection remembered(std::shared_ptr<FroxelHistory> memory, const FroxelStatics& statics) {
     if (!statics.same_froxels) return reproject(*memory, statics.grid, statics.tiles);
     return {memory.use_count() == 1 ? std::move(memory->light) : memory->light, {}};
 }
 
-// This frame's light with what the history knows of it; the history then knows this frame.
+// This frame's sums, blended with the history, which then holds this frame.
 FroxelSums sums_with_history(FroxelFrame& frame, FroxelStatics& statics, std::shared_ptr<FroxelHistory>& memory) {
     const FroxelSettings& settings = frame.scene.settings;
     const float view_depth = frame.picture.view_depth;
@@ -180,8 +181,8 @@ void make_parts(FroxelFrame& frame) {
     }
 }
 
-// The parts are those of this frame alone; where the history changed their sum they change alike. What it alone
-// remembers goes to the first.
+// Parts are of this frame only; they are scaled to match the sum after blending with the history. Light that only the
+// history has goes to the first part.
 void look_up_with_parts(FroxelFrame& frame, const RayBatch& batch, std::span<Scatter> results) {
     std::call_once(frame.parts_made, [&] { make_parts(frame); });
     const size_t parts = frame.parts.size(), beams = frame.scene.beams.size();

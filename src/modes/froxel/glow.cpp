@@ -21,7 +21,7 @@ bool shows_sun(const View& view, const Snapshot& snapshot, const Light& light) {
 }
 
 std::vector<Medium> media_in_sunlight(const View& view, const Snapshot& snapshot, int tile) {
-    constexpr float widest = 0.15f; // radians: beyond, froxels are no picture of anything
+    constexpr float widest = 0.15f; // radians; larger froxels do not resolve a glow at all
     const float across = std::min(tile_angle(view, tile), widest);
     const auto narrow = [&](const Medium& medium) {
         return medium.optics.phase.shape && is_narrow(medium.optics.phase, across);
@@ -29,7 +29,8 @@ std::vector<Medium> media_in_sunlight(const View& view, const Snapshot& snapshot
     const bool suns = std::ranges::any_of(snapshot.lights, [](const Light& light) { return is_distant(light); });
     if (!suns || std::ranges::none_of(snapshot.media, narrow)) return {};
     std::vector<Medium> media = snapshot.media;
-    // Discs as large as the froxels, twice: so smooth that the sum over froxels hardly hangs on where they lie.
+    // Convolved twice with disks of a froxel's area: smooth enough that the sum over froxels hardly depends on their
+    // alignment.
     const double radius = across / std::sqrt(pi);
     for (Medium& medium : media)
         if (narrow(medium)) medium.optics.phase = widened(widened(medium.optics.phase, radius), radius);

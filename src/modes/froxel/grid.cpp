@@ -6,7 +6,7 @@ FroxelGrid make_froxel_grid(const Camera& camera, ivec2 picture, int tile) {
     grid.camera = camera, grid.picture = picture, grid.tile = tile;
     grid.size = (picture + tile - 1) / tile + 2;
 
-    // As camera_ray(): a pixel's place on the plane at unit depth is linear in the pixel.
+    // As in camera_ray(), a pixel's position on the plane at unit depth is linear in the pixel.
     const vec2 extent(picture);
     const float height = camera.ortho_height > 0 ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov);
     const vec3 x = camera.right * (height / extent.y), y = -camera.up * (height / extent.y);
@@ -23,7 +23,7 @@ FroxelGrid make_froxel_grid(const Camera& camera, ivec2 picture, int tile) {
 }
 
 void set_slices(FroxelGrid& grid, float near, float far, int count, float growth, float end, int tail) {
-    far = std::max(far, near * 1.0001f); // rounding leaves room for the faces
+    far = std::max(far, near * 1.0001f); // keeps faces distinct despite rounding
     // Thickness grows by growth^(1/(count-1)) from slice to slice: faces lie at (r^k - 1) / (r^count - 1).
     const double rate = count > 1 ? std::log(static_cast<double>(growth)) / (count - 1) : 0;
     const double whole = std::expm1(rate * count);
@@ -44,7 +44,7 @@ void set_slices(FroxelGrid& grid, float near, float far, int count, float growth
     }
 
     if (!(end > far)) return;
-    const float first = far - grid.faces[static_cast<size_t>(count) - 1]; // the tail sets out as the slices end
+    const float first = far - grid.faces[static_cast<size_t>(count) - 1]; // the tail starts as thick as the last slice
     const double ratio = std::log1p(static_cast<double>(end - far) / first) / tail;
     for (int k = 1; k <= tail; ++k) grid.faces.push_back(static_cast<float>(far + first * std::expm1(ratio * k)));
 }

@@ -21,9 +21,9 @@
 
 namespace tyndall {
 namespace {
-// Size of a froxel in the middle of the scene: across, and in depth.
+// Size of a froxel at the scene's center: across, and in depth.
 struct FroxelSize {
-    float across = 0, deep = 0; // metres
+    float across = 0, deep = 0; // meters
 
     float coarse() const { return std::max(across, deep); }
 };
@@ -39,7 +39,7 @@ bool in_fog(const Snapshot& snapshot, vec3 point) {
     return std::ranges::any_of(snapshot.media, [&](const Medium& medium) { return density_at(medium, point) > 0; });
 }
 
-// Whether all of a light is that of the frame, followed along each ray; `exact`: its shadows too.
+// Whether all of a light is integrated per camera ray in each frame; `exact`: with its shadows.
 struct Followed {
     bool all = false, exact = false;
 };
@@ -51,7 +51,7 @@ Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSett
     return {by_ray && (has_cone(light) || exact || !shadows), exact};
 }
 
-// A sun whose glow is narrower than the froxels that hold it.
+// Reports a sun in the image whose glow is narrower than a froxel.
 void add_glow(const View& view, const Snapshot& snapshot, const Light& light, int tile, Limitations& limitations) {
     if (!shows_sun(view, snapshot, light)) return;
     const float across = tile_angle(view, tile);
@@ -66,7 +66,7 @@ void add_glow(const View& view, const Snapshot& snapshot, const Light& light, in
                                {glm::degrees(glow), glm::degrees(across)}});
 }
 
-// Of each light: its shadows, its movement and what is next to it.
+// Reports errors in a light's shadows, filter, motion and nearby glow.
 void add_light(const View& view, const Light& light, const Snapshot& snapshot, const FroxelSettings& settings,
                FroxelSize size, Limitations& limitations) {
     const auto add = [&](Severity severity, const LimitationKind& kind, std::array<double, 2> amounts = {}) {
@@ -90,12 +90,12 @@ void add_light(const View& view, const Light& light, const Snapshot& snapshot, c
         add(Severity::info, limitation::flat_glow, {size.coarse()});
 }
 
-// Of each medium: what changes within a froxel.
+// Reports detail of a medium that is finer than a froxel.
 void add_medium(const Medium& medium, FroxelSize size, Limitations& limitations) {
     const auto add = [&](Severity severity, const LimitationKind& kind, std::array<double, 2> amounts) {
         limitations.push_back({severity, &kind, Subject::medium, medium.name, amounts});
     };
-    if (only_emits(medium.optics)) return; // rays ask it by themselves
+    if (only_emits(medium.optics)) return; // integrated per camera ray
     const vec3 sides = medium.world_bounds.size();
     const float thin = std::min(sides.x, std::min(sides.y, sides.z));
     const float depth = medium.majorant() * std::min(size.deep, thin);
@@ -108,7 +108,7 @@ void add_medium(const Medium& medium, FroxelSize size, Limitations& limitations)
 }
 
 Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    Settings terms = settings; // what the march says of single scattering holds here too
+    Settings terms = settings; // the march's limitations of single scattering apply here too
     terms.march.visibility = Visibility::rays;
     Limitations limitations = main_mode().limitations(view, snapshot, terms);
     std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });

@@ -1,4 +1,4 @@
-// How the froxel cache is off.
+// Limitations of froxel.
 #pragma once
 #include "modes/limitation.h"
 

@@ -1,4 +1,4 @@
-// Settings of the froxel cache: rows, presets, and the ladder from quick to careful.
+// Settings of froxel: rows, presets, and the ladder from fastest to most accurate.
 #include "modes/froxel/settings.h"
 #include "modes/mode.h"
 #include "modes/settings_rows.h"

@@ -1,4 +1,4 @@
-// Settings of the froxel cache.
+// Settings of froxel.
 #pragma once
 #include "modes/settings.h"
 
@@ -15,11 +15,11 @@ struct FroxelSettings {
     FroxelVisibility visibility = FroxelVisibility::intervals;
     int shadow_rays = 1; // per froxel and frame
     FroxelLookup lookup = FroxelLookup::trilinear;
-    float history = 0.9f; // weight of the frames before
+    float history = 0.9f; // weight of earlier frames
     bool amortise = false;
 };
 
-// For its row of the table.
+// For the mode's row of the table.
 void append_froxel_rows(std::vector<SettingRow>& rows);
 void set_froxel_quality(Settings& settings, Quality quality);
 std::vector<Rung> froxel_rungs();

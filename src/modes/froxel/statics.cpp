@@ -7,7 +7,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int tail_slices = 12; // for fog that goes on behind the scene
+constexpr int tail_slices = 12; // for fog that extends behind the scene
 
 bool same(const Box& a, const Box& b) { return a.low == b.low && a.high == b.high; }
 
@@ -20,7 +20,7 @@ bool same(const std::shared_ptr<const Occluders>& a, const std::shared_ptr<const
     return a == b || (a && b && a->shares_with(*b));
 }
 
-// Where and how dense, not how it scatters.
+// Compares where a medium is and how dense, not how it scatters.
 bool same(const Medium& a, const Medium& b) {
     return a.density.kind == b.density.kind && grey_extinction(a.optics) == grey_extinction(b.optics) &&
            same(a.density.bounds, b.density.bounds) && a.density.world_to_local == b.density.world_to_local &&
@@ -28,7 +28,8 @@ bool same(const Medium& a, const Medium& b) {
            a.density.height_falloff == b.density.height_falloff && a.density.bricks == b.density.bricks;
 }
 
-// Whether the slices of a grid still cover the fog and are hardly wider: froxels that stay where they are lose nothing.
+// Whether a grid's slices still cover the fog and are hardly larger than needed: then froxels stay in place, and
+// history needs no resampling.
 bool serve(const FroxelGrid& grid, int slices, const FogDepths& depths) {
     constexpr float wider = 1.1f;
     const float near = grid.faces.front(), far = grid.faces[static_cast<size_t>(slices)], end = grid.faces.back();
@@ -37,7 +38,7 @@ bool serve(const FroxelGrid& grid, int slices, const FogDepths& depths) {
            far - near <= wider * (depths.far - depths.near) && end - near <= wider * (needed - depths.near);
 }
 
-// With room for fog that moves on.
+// Adds a margin for fog that keeps moving.
 FogDepths widened(FogDepths depths) {
     constexpr float room = 1.0f / 32;
     const float margin = room * (depths.far - depths.near);

@@ -1,4 +1,4 @@
-// What stays as it is from frame to frame while camera, surfaces and fog stand still, whatever the lights do.
+// Data that is reused from frame to frame while camera, surfaces and fog are static, whatever the lights do.
 #pragma once
 #include "modes/froxel/fill/fill.h"
 #include "modes/froxel/settings.h"
@@ -9,22 +9,23 @@ struct FroxelStatics {
     FroxelTiles tiles;
     std::vector<Medium> media;
     std::shared_ptr<const Occluders> occluders;
-    bool same_view = false, same_fog = false; // as in the frame before; fog and what is seen of it
-    bool same_froxels = false;                // each where one was in the frame before
-    int stood = 0;                            // frames for which that has been so
+    bool same_view = false, same_fog = false; // as in the previous frame: view and surfaces; those and fog
+    bool same_froxels = false;                // froxels coincide with those of the previous frame
+    int stood = 0;                            // number of frames with same_fog
 
-    // Whether what is remembered of the fog is its mean over the rays of each tile.
+    // Whether the history's extinction is its mean over all rays of each tile.
     bool settled() const { return stood >= 2 * static_cast<int>(tiles.rays()); }
 
-    // Extinctions by the turn of the tiles' rays, of fog that has stood still for a frame at least.
+    // Extinctions by ray of a tile (rays take turns from frame to frame), for fog that has been static for at least a
+    // frame.
     std::vector<std::shared_ptr<const RecycledFloats>> extinctions;
 };
 
-// Reads a frame's scene with what is known of the frame before (null: nothing). `snapshot` as the settings
-// see it. A grid without slices: no fog in view.
+// The statics of a frame, shared with those of the previous frame (may be null) where nothing has changed. `snapshot`:
+// with the settings applied. The grid has no slices if no fog is in view.
 FroxelStatics look_at_scene(const View& view, const Snapshot& snapshot, const FroxelSettings& settings,
                             const FroxelStatics* before);
 
-// As fill_froxels(), with the extinctions known or noted.
+// Same as fill_froxels(), but reuses stored extinctions, or stores them for later frames.
 FroxelLight fill_still_froxels(const FroxelScene& scene, FroxelStatics& statics, FillPass pass);
 }

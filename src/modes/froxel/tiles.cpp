@@ -7,8 +7,8 @@
 
 namespace tyndall {
 namespace {
-constexpr int max_layers = 8;    // of BLEND surfaces in a row
-constexpr float horizon = 1e12f; // metres; no ray goes further
+constexpr int max_layers = 8;    // BLEND surfaces that a ray passes at most
+constexpr float horizon = 1e12f; // meters; no ray goes farther
 constexpr double opaque_depth = 12;
 
 std::vector<vec2> ray_offsets(int tile) {
@@ -68,7 +68,7 @@ void trace_row(const FroxelGrid& grid, const Occluders& occluders, int y, Froxel
     }
 }
 
-// Where unbounded fog has done what it can do to a ray: optical depth 12, or a millionth left.
+// Distance at which unbounded fog reaches optical depth 12, or all but 1e-6 of its total.
 float reach_of(const Medium& medium, Ray ray) {
     const auto depth_to = [&](float distance) {
         ray.t_max = distance;

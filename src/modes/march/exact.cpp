@@ -14,30 +14,30 @@ namespace tyndall {
 namespace {
 constexpr int nodes_per_part = 2;
 
-// A stretch from which a share of a light's points is seen.
+// A segment that sees a fraction of a light's sample points.
 struct LitPart {
     Interval<double> stretch;
     double share = 1;
 };
 
-// Where one more or one less of them is seen.
+// Where the number of visible sample points changes.
 struct LitEnd {
     double t = 0;
     int change = 0;
 };
 
-// A point of the ray and what it adds to its light if nothing dims that on its way.
+// A point of the ray, and its contribution before attenuation of the light on its way there.
 struct Node {
     dvec3 position, light;
 };
 
-// Memory that a thread keeps from ray to ray.
+// Memory that a thread reuses from ray to ray.
 struct Scratch {
     FogPieces fog;
     LightAlong along;
     std::vector<LitPart> lit; // by the current light
     std::vector<LitEnd> ends;
-    std::vector<Node> nodes; // that some are drawn from
+    std::vector<Node> nodes; // to resample from
 };
 
 struct RayMarch {
@@ -45,20 +45,20 @@ struct RayMarch {
     const Ray& ray;
     float jitter = 0.5f; // in [0,1)
     Scratch& scratch;
-    double longest = 0; // step by length alone
-    double detail = 0;  // angle seen from the light over which its filter may change; 0 = none
+    double longest = 0; // maximum length of a step
+    double detail = 0;  // finest detail of the light's filter, radians; 0 = no filter
     int nodes = 0;
 
     dvec3 at(double t) const { return dvec3(ray.origin) + t * dvec3(ray.direction); }
 };
 
-// Splits a stretch of one piece of fog until every part obeys the march's bounds; `along` is the light to be followed,
-// null for none.
+// Splits a segment of one piece of fog until every part is within the march's step limits; `along`: the current light,
+// or null.
 template<class Visit>
 void split(const RayMarch& on, size_t piece, double low, double high, const LightAlong* along, const Visit& visit) {
     const MarchSettings& settings = on.frame.rule->settings;
     const FogPieces& fog = on.scratch.fog;
-    const double closest = 1e-4 * on.frame.snapshot.extent; // nearer to a light parts shrink no further
+    const double closest = 1e-4 * on.frame.snapshot.extent; // closer to a light, parts get no shorter
     const double length = high - low;
     const double away = along ? std::max(along->distance_to(low, high), closest) : double(infinity);
     if (length > away && length > settings.near_light * away) {
@@ -77,7 +77,7 @@ void split(const RayMarch& on, size_t piece, double low, double high, const Ligh
     for (double i = 0; i < parts; ++i) visit(low + length * (i / parts), low + length * ((i + 1) / parts));
 }
 
-// Share of the light scattered at a point of the ray that reaches the eye.
+// Fraction of the light scattered at a point of the ray that reaches the eye.
 double seen(const RayMarch& on, size_t piece, double t) {
     const StyleSettings& style = on.frame.style;
     const double share = std::exp(-style.view_depth * on.scratch.fog.depth_at(piece, t));
@@ -85,7 +85,7 @@ double seen(const RayMarch& on, size_t piece, double t) {
     return share * style_fade(style, eye_distance(on.frame.camera, on.ray.at(static_cast<float>(t))));
 }
 
-// Calls body(piece, t, weight) at the nodes of all fog on the ray; the weights hold what of their light arrives.
+// Calls body(piece, t, weight) at the nodes of all fog on the ray; weights include transmittance to the eye.
 template<class Body> void at_nodes(RayMarch& on, const Body& body) {
     const FogPieces& fog = on.scratch.fog;
     for (size_t piece = 0; piece < fog.pieces.size(); ++piece)
@@ -102,14 +102,14 @@ vec3 albedo_on(const RayMarch& on, const Optics& optics, double t) {
     return optics.albedo_field ? albedo_at(optics, vec3(on.at(t))) : optics.albedo;
 }
 
-// What a field emits, at nodes of its own.
+// Emission of a field, at its own nodes.
 dvec3 light_of_field(RayMarch& on, const Medium& field) {
     const FogPieces& fog = on.scratch.fog;
     dvec3 sum(0);
     size_t piece = 0;
     find_emission_nodes(*field.density.bricks, on.ray, [&](EmissionNode node) {
         while (piece + 1 < fog.pieces.size() && fog.pieces[piece + 1].low <= node.t) ++piece;
-        double share = 1; // before all fog, and without any
+        double share = 1; // in front of all fog, or without any
         if (!fog.pieces.empty() && node.t > fog.pieces[piece].low)
             share = seen(on, piece, std::min<double>(node.t, fog.pieces[piece].high));
         else if (fades(on.frame.style))
@@ -140,7 +140,7 @@ OtherSums glow(RayMarch& on) {
     return sum;
 }
 
-// Light that has been scattered before, cell by cell of its grid.
+// Multiply scattered light, in steps no longer than a cell of the fluence grid.
 dvec3 scattered_before(RayMarch& on) {
     const FogPieces& fog = on.scratch.fog;
     const FluenceGrid& grid = *on.frame.fluence;
@@ -158,11 +158,11 @@ dvec3 scattered_before(RayMarch& on) {
     return sum;
 }
 
-// Sixteen points at which a light is asked for at once.
+// Up to 16 points at which a light is evaluated together.
 struct Pending {
     alignas(64) float x[16] = {}, y[16] = {}, z[16] = {};
     alignas(64) int32_t active[16] = {};
-    dvec3 position[16], light[16]; // what each adds if nothing dims the light on its way
+    dvec3 position[16], light[16]; // contribution of each before attenuation of the light
     int count = 0;
 };
 
@@ -176,7 +176,7 @@ void add_alpha_shadows(const RayMarch& on, const LightPoint& to, const Pending& 
         const double distance = glm::length(towards);
         const dvec3 direction = towards / distance;
         double end = to.far ? double(infinity) : distance;
-        if (to.radius > 0) { // at the ball's surface
+        if (to.radius > 0) { // ends at the surface of the light's sphere
             const dvec3 center = to.center - pending.position[i];
             const double along = glm::dot(center, direction), off = glm::dot(center, center) - along * along;
             end = along - std::sqrt(std::max(to.radius * to.radius - off, 0.0));
@@ -188,7 +188,7 @@ void add_alpha_shadows(const RayMarch& on, const LightPoint& to, const Pending& 
     shadow_casters(*on.scratch.along.light, on.frame.snapshot)->transmission(rays, share);
 }
 
-// Adds the pending points to the sum, dimmed by the fog between them and the light.
+// Adds the pending points to the sum, attenuated by surfaces with alpha and fog between them and the light.
 void add_pending(RayMarch& on, size_t light_index, Pending& pending, dvec3& sum) {
     if (pending.count == 0) return;
     alignas(64) float depth[16] = {}, share[16];
@@ -209,8 +209,8 @@ void add_node(RayMarch& on, size_t light_index, const Node& node, Pending& pendi
     if (pending.count == 16) add_pending(on, light_index, pending, sum);
 }
 
-// About `count` of the scratch's nodes, each as often as it adds to the light (systematic resampling, Kitagawa 1996):
-// the mean over jitters is what all of them give.
+// Adds about `count` of the scratch's nodes, resampled in proportion to their contribution (systematic resampling,
+// Kitagawa 1996): the expected value over jitters is the sum of all nodes.
 void add_drawn(RayMarch& on, size_t light_index, int count, Pending& pending, dvec3& sum) {
     const auto weight = [](const Node& node) { return node.light.x + node.light.y + node.light.z; };
     double all = 0, before = 0;
@@ -225,7 +225,7 @@ void add_drawn(RayMarch& on, size_t light_index, int count, Pending& pending, dv
     }
 }
 
-// Light scattered towards the eye at a node of given weight, before what dims it on its way from the light.
+// Light scattered towards the eye at a node of given weight, before attenuation on its way from the light.
 dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
     const FogPieces& fog = on.scratch.fog;
     const LightSamplesAt light_at = arriving_at(on.scratch.along, t);
@@ -241,7 +241,7 @@ dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
     return scattering * (weight * light_at.amount * seen(on, piece, t)) * light_at.tint;
 }
 
-// Nodes of one part: even in t for the sun, in the angle seen from a local light.
+// Quadrature nodes of one part: in t for suns, in the angle seen from the light for local lights.
 template<class Add> void visit_nodes(const LightAlong& along, double low, double high, const Add& add) {
     const std::span<const QuadratureNode> nodes = gauss_legendre(nodes_per_part);
     if (!along.local()) {
@@ -255,7 +255,7 @@ template<class Add> void visit_nodes(const LightAlong& along, double low, double
     }
 }
 
-// Light of the scratch's light along the ray: the lit stretches, piece of fog by piece of fog.
+// Light of scratch.along along the ray: over the lit segments, by pieces of fog.
 dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     const FogPieces& fog = on.scratch.fog;
     const LightAlong& along = on.scratch.along;
@@ -268,7 +268,7 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     dvec3 sum(0);
     const auto add = [&](size_t piece, double t, double weight) {
         const dvec3 light = scattered_at(on, piece, t, weight);
-        // A million such nodes would not change the seventh digit.
+        // Negligible: a million such nodes would not change the seventh digit.
         if (glm::all(glm::lessThanEqual(light, 1e-13 * sum))) return;
         ++on.nodes;
         if (marches > 0)
@@ -298,8 +298,8 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     return sum * dvec3(along.light->intensity * along.light->volume_scale);
 }
 
-// Light of one light along the ray: each point's lit stretches, taken together where shares of them can be. Shadow rays
-// through surfaces with alpha need a point each.
+// Light of one light along the ray. The lit segments of its sample points are merged, each part with the fraction of
+// points it sees; with alpha shadows they stay separate, as each shadow ray needs its own point.
 dvec3 light_from(RayMarch& on, const RayBatch& batch, size_t ray, size_t light_index) {
     const SingleScattering& frame = on.frame;
     const Light& light = frame.snapshot.lights[light_index];

@@ -17,7 +17,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Memory that a thread keeps from packet to packet. Plain floats: containers know nothing of vector registers.
+// Memory that a thread reuses from packet to packet: plain floats, as containers cannot hold vector registers.
 struct Scratch {
     std::array<std::vector<Step>, 16> steps;
     std::vector<std::array<float, 16>> extinction; // of each medium at the current points
@@ -26,7 +26,7 @@ struct Scratch {
 struct Packet {
     Vec3s origin, direction;
     Scratch& scratch;
-    size_t longest = 0; // most steps of any lane
+    size_t longest = 0; // maximum number of steps of any lane
 
     HWY_INLINE Floats extinction(size_t medium) const { return load(scratch.extinction[medium].data()); }
 };
@@ -37,7 +37,7 @@ struct Totals {
     Floats transmittance;
 };
 
-// Points of one step, and how the light arrives there.
+// Sample points of one step.
 struct Points {
     Vec3s position;
     Floats length; // of the step, 0 in lanes that are done
@@ -55,7 +55,7 @@ void place_steps(const SingleScattering& frame, const RayBatch& batch, Packet& p
     }
 }
 
-// The k-th step of every lane: where it looks and how long it is.
+// The k-th step of every lane: its sample point and length.
 Points step_points(const Packet& packet, size_t k, const float* jitter) {
     alignas(64) float at[16], length[16];
     for (size_t lane = 0; lane < 16; ++lane) {
@@ -71,7 +71,7 @@ Points step_points(const Packet& packet, size_t k, const float* jitter) {
     return points;
 }
 
-// Share of the light that surfaces let through.
+// Fraction of the light that surfaces let through.
 Floats visible_share(const SingleScattering& frame, const Light& light, const Points& points,
                      const LightSamples& light_at, const Mask16& wanted, const RayBatch& batch, size_t step,
                      size_t light_index) {
@@ -85,7 +85,7 @@ Floats visible_share(const SingleScattering& frame, const Light& light, const Po
                          frame.light_points, key);
 }
 
-// Light scattered towards the eye from one light, per metre: Σ over media of σs p, times what arrives.
+// Light scattered towards the eye from one light, per meter: Σ over media of σs p, times the arriving light.
 Vec3s scattered_from(const SingleScattering& frame, size_t light_index, const Points& points, const Packet& packet,
                      const RayBatch& batch, size_t step) {
     const Light& light = frame.snapshot.lights[light_index];
@@ -102,7 +102,7 @@ Vec3s scattered_from(const SingleScattering& frame, size_t light_index, const Po
                            zero_unless(wanted, light_at.amount * share), towards);
 }
 
-// Extinction of all media at the points; remembers each in the packet's scratch.
+// Total extinction at the points; stores that of each medium in the packet's scratch.
 Floats extinction_at(const SingleScattering& frame, const Points& points, const Packet& packet) {
     Floats total = 0.0f;
     for (size_t m = 0; m < frame.snapshot.media.size(); ++m) {
@@ -141,7 +141,7 @@ void march_packet_kernel(const SingleScattering& frame, const RayBatch& batch, s
         taken = taken + select(points.active, 1.0f, 0.0f);
         if (!any(points.active)) continue;
 
-        // What a source of 1 per metre in this step adds to the eye.
+        // Radiance at the eye from a source of 1 per meter in this step.
         const Floats depth = extinction * points.length;
         Floats weight = totals.transmittance * points.length * mean_transmittance(depth);
         if (styled) {

@@ -15,7 +15,7 @@
 
 namespace tyndall {
 namespace {
-// Lights whose shadows a setting leaves out, or finds otherwise than it says.
+// Reports lights whose shadows the visibility setting ignores, or finds by another method than it names.
 void add_visibility(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations) {
     const Visibility visibility = settings.march.visibility;
     const bool alpha = has_alpha_shadows(snapshot);

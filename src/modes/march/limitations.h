@@ -1,4 +1,4 @@
-// How the march is off.
+// Limitations of march.
 #pragma once
 #include "modes/limitation.h"
 

@@ -1,5 +1,5 @@
-// The main renderer: single scattering by ray marching. Steps follow the fog, shadows are traced, light is dimmed by
-// the fog it crosses.
+// The main renderer: single scattering by ray marching with shadows, attenuation of light by fog and steps adapted to
+// the fog, plus cached multiple scattering.
 #include "integrate/lights/field_light.h"
 #include "integrate/lights/path_lights.h"
 #include "integrate/style.h"
@@ -32,8 +32,7 @@ ShadowsBy shadows_by(const View& view, Visibility visibility, const Light& light
     return ShadowsBy::none;
 }
 
-// Steps that resolve what they have to ask for: the shadows of lights that are not found otherwise, and the strength of
-// all where nothing else follows the lights.
+// Sets the step rule: steps resolve lights whose shadows are sampled by rays or, with `all`, every light.
 void add_steps(const MarchSettings& march, bool all, SingleScattering& fog) {
     std::vector<Light> lights;
     for (size_t i = 0; i < fog.shadows.size(); ++i)

@@ -1,4 +1,4 @@
-// Settings of the main renderer: rows, presets, and the ladder from quick to careful.
+// Settings of march: rows, presets, and the ladder from fastest to most accurate.
 #include "modes/march/settings.h"
 #include "modes/mode.h"
 #include "modes/settings_rows.h"
@@ -57,7 +57,7 @@ void set_march_quality(Settings& settings, Quality quality) {
 }
 
 namespace {
-// What a rung decides.
+// Rows that a rung sets.
 constexpr std::array<std::string_view, 9> rung_rows{
     "march.step_depth", "march.step_voxels", "march.step_share", "march.near_light",      "march.min_transmittance",
     "march.visibility", "march.nodes",       "terms.light",      "terms.light_resolution"};
@@ -72,8 +72,8 @@ Rung rung_of(std::string name, int samples, const Settings& settings) {
 }
 }
 
-// Steps and light grids get finer together, since neither alone is the whole error; samples grow with care, so that the
-// edges of surfaces do not hide what the fog gains.
+// Steps and light grids are refined together, as each is only part of the error; pixel samples grow with them, so that
+// the edges of surfaces do not hide the gain in the fog.
 std::vector<Rung> march_rungs() {
     const auto of = [](Quality quality) {
         Settings settings;

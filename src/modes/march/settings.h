@@ -1,4 +1,4 @@
-// For the row of march in the table.
+// Settings of march, for the mode's row of the table.
 #pragma once
 #include "modes/settings.h"
 

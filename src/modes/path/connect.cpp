@@ -1,4 +1,4 @@
-// Shadow rays in packets, fog by ratio tracking.
+// Connections: shadow rays in packets, transmittance of fog by ratio tracking.
 #include "modes/path/connect.h"
 
 #include "scene/area_shape.h"
@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-// Shadow rays through the surfaces that shadow each light: all, or for some lights a set of them.
+// Traces shadow rays against the surfaces that shadow each light: all surfaces, or the light's set of casters.
 void pass_surfaces(const Snapshot& snapshot, std::span<const Connection> connections, Occluders::ShadowRays& rays,
                    float* shares) {
     const auto set_of = [&](size_t i) { return i < connections.size() ? connections[i].casters : -1; };
@@ -28,7 +28,7 @@ void pass_surfaces(const Snapshot& snapshot, std::span<const Connection> connect
     }
 }
 
-// To a point of a light's face.
+// A connection to a sampled point of an area light's face.
 Connection connection_to_face(const Light& light, vec3 point, int index, vec2 u) {
     const AreaSample sample = sample_area(*light.area, point, u);
     Connection c;

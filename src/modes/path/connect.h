@@ -1,4 +1,4 @@
-// From a point of a path to a light: what surfaces and fog leave of it.
+// Connections from a point of a path to a light (next-event estimation), attenuated by surfaces and fog.
 #pragma once
 #include "modes/path/tracer.h"
 #include "volume/tracking.h"
@@ -9,39 +9,40 @@ namespace tyndall {
 struct Connection {
     vec3 point{0};        // where light is scattered
     vec3 face_normal{0};  // of a surface point, towards the viewer; 0 in fog
-    vec3 to_light{0};     // unit, to the light's centre: the way through the fog
-    float fog_length = 0; // of that way, infinite for the sun
-    vec3 shadow{0};       // unit, to a point of the light: the way of the shadow ray
+    vec3 to_light{0};     // unit, to the light's center: direction through the fog
+    float fog_length = 0; // length in that direction, infinite for suns
+    vec3 shadow{0};       // unit, to a point of the light: direction of the shadow ray
     float shadow_length = 0;
     bool shadows = true;
-    int casters = -1;     // set of the snapshot whose surfaces may be in the way; -1 = all
-    vec3 light{0};        // what reaches the eye if nothing is in the way
-    vec3 irradiance{0};   // of a light with a face: what arrives from it by this connection, facing it
-    float steradians = 0; // likewise: one over the chance per steradian of the way
-    int light_index = -1; // of the snapshot; -1 = none of its lights, but the next
+    int casters = -1;     // casters that may block the light: a set of the snapshot; -1 = all
+    vec3 light{0};        // radiance at the eye if nothing is in the way
+    vec3 irradiance{0};   // for an area light: irradiance of this sample, facing the light
+    float steradians = 0; // likewise: reciprocal of the direction's pdf, sr
+    int light_index = -1; // of the snapshot; -1 = none, see `other`
     OtherLight other = OtherLight::emission;
     size_t lane = 0;     // of the batch
     bool in_fog = false; // the path's first event was in fog
     RandomStream random;
 };
 
-// From a point to a light of the snapshot; `u` picks the point of a soft light. To one with a face it goes to that
-// point, also through the fog.
+// A connection to a light of the snapshot; `u` samples a point of a soft light. For an area light, the path through the
+// fog ends at that point too.
 Connection connection_to_light(const PathTracer& tracer, vec3 point, int light, vec3 to_light, vec2 u);
 
-// From a point to a point on a glowing surface.
+// A connection to a point on an emissive surface.
 Connection connection_to_glow(vec3 point, const EmissivePoint& target);
 
-// From a point to a place in glowing fog.
+// A connection to a point in emissive fog.
 Connection connection_to_fire(vec3 point, const EmissivePlace& target);
 
-// From a point to where the environment's light comes from.
+// A connection to the environment in a given direction.
 Connection connection_to_sky(const Environment& environment, vec3 point, vec3 direction);
 
-// Share of light that surfaces let through, of up to 16 connections; 1 for dark ones and lights without shadows.
+// Fraction of light that surfaces let through, for up to 16 connections; 1 for those without light and for lights
+// without shadows.
 void find_visibility(const PathTracer& tracer, std::span<const Connection> connections, float* visibility);
 
-// Adds what each connection brings to the results, and, where it is scattered in fog, to the batch's parts. Empties the
+// Adds the light of each connection to the results and, if it is scattered in fog, to the batch's parts. Clears the
 // list.
 void connect(const PathTracer& tracer, std::vector<Connection>& connections, const RayBatch& batch,
              std::span<Scatter> results);

@@ -1,16 +1,15 @@
-// Faces of lights are aimed at; where fog scatters more narrowly than a face is wide, the directions that paths take
-// find it as well. Both share its light (multiple importance sampling).
+// Multiple importance sampling of area lights: light sampling and, where the phase function is narrower than a face,
+// directions sampled by the phase function.
 #pragma once
 #include "modes/path/vertex.h"
 
 namespace tyndall {
-// The largest value of the phase function at a point, 1/sr, where it finds the face of some light; else 0.
+// Peak of the phase function at a point, 1/sr, if directions sampled by it look for the face of some light; else 0.
 float peak_for_faces(const PathTracer& tracer, const FogPoint& fog);
 
-// Share of what aiming at a light brings to a point with such a peak that is not left to the phase function, whose
-// direction there has a cosine with the line.
+// MIS weight of light sampling at a point with such a peak; `cosine`: between the connection and the line.
 float aimed_share(const Walk& walk, const FogPoint& fog, const Connection& connection, float peak, float cosine);
 
-// Adds the light of the faces on the current stretch of a line that looks for them.
+// Adds the light of faces that the current segment of a line hits, with its MIS weight.
 void meet_faces(const Walk& walk, Segment& line);
 }

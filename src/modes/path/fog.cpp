@@ -1,4 +1,4 @@
-// Light from fog on a stretch of a line.
+// Light from fog on a segment of a line.
 #include "modes/path/faces.h"
 #include "scene/light.h"
 #include "volume/bricks/bricks.h"
@@ -6,8 +6,9 @@
 
 namespace tyndall {
 namespace {
-// Of the chance to collide, what counts beside picking: places on a line are picked by their brightness, collisions are
-// not. Between 1/4 and 1/16 noise is within 5 % of its least, in flames of 0.5 as in those of 200 optical depths.
+// Factor on the pdf of collisions in MIS weights, against picking: points on a line are picked by their brightness,
+// collisions are not. Between 1/4 and 1/16 noise is within 5 % of its minimum, in flames of 0.5 as in those of 200
+// optical depths.
 constexpr float collision_share = 1.0f / 8;
 
 void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
@@ -21,8 +22,8 @@ void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lo
     }
 }
 
-// A guess at the share of light that passes up to a distance. Weights may be built from any guess: they only have to
-// be the same from both sides. Grids count with their mean; a ray may find gaps in them, so that is not taken too far.
+// An estimate of the transmittance up to a distance. MIS weights may use any estimate that is the same for both
+// techniques. Grids count with their mean density, up to a limit, as a ray may pass through gaps in them.
 float guessed_transmittance(const Snapshot& snapshot, const Segment& line, float distance) {
     Ray ray = line.rest;
     ray.t_max = distance;
@@ -39,16 +40,16 @@ float guessed_transmittance(const Snapshot& snapshot, const Segment& line, float
     return static_cast<float>(std::exp(-depth - std::min(in_grids, max_in_grids)));
 }
 
-// How many distances a line is asked at. The eye's lines are many times worth their shadow rays: beams are narrow.
+// Number of candidate distances on a line. Lines from the eye are worth more shadow rays, as beams are narrow.
 int candidate_count(const Walk& walk) { return walk.order == 0 ? 16 : 1; }
 
-// A distance along the stretch where a light may arrive.
+// A candidate distance along the segment, at which a light is sampled.
 struct Candidate {
-    float distance = 0, brightness = 0; // brightness: of `scattered`, with a guess at what dims it; 0 = rejected
-    vec3 scattered{0};                  // over its chance, weighted against collisions; without what is in the way
+    float distance = 0, brightness = 0; // brightness: luminance of `scattered` times transmittance; 0 = rejected
+    vec3 scattered{0};                  // over its pdf, with the MIS weight against collisions; without transmittance
 };
 
-// Spreads the candidates over lights and distances and asks for all shadows at once.
+// Distributes the candidates over lights and distances, and traces all their shadow rays together.
 void find_candidates(const Walk& walk, const Segment& line, std::span<Candidate> candidates,
                      std::span<Connection> connections) {
     const Snapshot& snapshot = walk.snapshot;
@@ -56,12 +57,12 @@ void find_candidates(const Walk& walk, const Segment& line, std::span<Candidate>
     const vec2 u = line.numbers(use_distance), soft = line.numbers(use_soft);
     const float count = static_cast<float>(candidates.size());
     size_t light = 0;
-    float passed = 0; // chances of the lights before
+    float passed = 0; // probability of all earlier lights
     for (size_t i = 0; i < candidates.size(); ++i) {
         const float wanted = (static_cast<float>(i) + u.x) / count;
         while (light + 1 < lights.size() && passed + lights[light].chance <= wanted) passed += lights[light++].chance;
         if (!(lights[light].chance > 0)) continue;
-        const auto turned = [&](float x) { // by the golden ratio from candidate to candidate
+        const auto turned = [&](float x) { // rotated by the golden ratio from candidate to candidate
             const float sum = x + static_cast<float>(i) * 0.618034f;
             return sum - std::floor(sum);
         };
@@ -97,21 +98,21 @@ void weigh(const Walk& walk, const Segment& line, const Connection& connection, 
     candidate.brightness = luminance(candidate.scattered) * guess;
 }
 
-// Where a medium lies on the stretch, when it is so thin there that paths hardly ever collide with it; else empty.
+// Interval of a medium on the segment if it is so thin there that paths rarely collide with it; else empty.
 Interval<float> thin_range(const Segment& line, const Medium& medium) {
     const Interval<float> inside = clip(medium.world_bounds, line.rest.origin, line.rest.direction, {0, line.end});
     return medium.majorant() * inside.length() < 1 ? inside : Interval<float>{};
 }
 
-// A place in the fire is found in three ways that share its light (balance heuristic): by aiming at it from where the
-// line began, by picking a place on the line, which in thin fog finds nearly all, and where paths collide, which in
-// thick fog is where the fire is seen. What dims the line is left out of the chances of the last two.
+// Light of a point in fire is sampled in three ways, combined by the balance heuristic: by connecting to it from the
+// start of the line; by picking a point on the line, best in thin fog; and by collisions of the path, best in thick
+// fog. Transmittance along the line is left out of the pdfs of the last two.
 struct FireShares {
     float picked = 0, collided = 0;
 };
 FireShares fire_shares(const Segment& line, const EmissivePlace& place, float distance, float colliding) {
     const float found = place.line_density + colliding, away = line.travelled + distance;
-    const bool aims = line.walker.density > 0; // the eye does not
+    const bool aims = line.walker.density > 0; // no connections from the eye
     const float chance = aims ? found + place.density * away * away / line.walker.density : found;
     if (!(chance > 0)) return {};
     return {place.line_density / chance, colliding / chance};
@@ -132,7 +133,7 @@ void gather_field(const Walk& walk, Segment& line, size_t number) {
               walk.order == 0 || line.walker.in_fog);
 }
 
-// What thin fog emits, from one distance of each medium's range; thicker fog emits where paths collide with it.
+// Adds emission of thin fog at one sampled distance per medium; thicker fog emits at collisions.
 void gather_emission(const Walk& walk, Segment& line) {
     const size_t fields = walk.tracer.fire ? walk.tracer.fire->fields.size() : 0;
     for (size_t m = 0; m < fields && line.through > 0; ++m) gather_field(walk, line, m);
@@ -149,8 +150,8 @@ void gather_emission(const Walk& walk, Segment& line) {
     }
 }
 
-// Light scattered at a distance picked for the lights: of several candidates one goes on, in proportion to what it
-// would bring (resampled importance sampling: Talbot et al. 2005). Returns the light that passes the stretch.
+// Adds light scattered at a distance sampled for the lights: one of several candidates, picked in proportion to its
+// estimated contribution (resampled importance sampling: Talbot et al. 2005). Returns the transmittance of the segment.
 float gather_on_the_way(const Walk& walk, Segment& line) {
     int& lookups = walk.results[line.walker.lane].steps;
     const auto passing = [&](Interval<float> range) { return passing_share(walk, line, range); };
@@ -183,7 +184,8 @@ float gather_on_the_way(const Walk& walk, Segment& line) {
     return before * passing({candidate.distance, line.end});
 }
 
-// Light from all around that a medium scatters at a point of the line, per metre of it times `weight`.
+// Adds environment light that a medium scatters at a point of the line; `weight`: length that the point represents,
+// times transmittance.
 void gather_sky_by(const Walk& walk, Segment& line, const FogPoint& fog, size_t medium, float weight) {
     const Snapshot& snapshot = walk.snapshot;
     const Optics& optics = snapshot.media[medium].optics;
@@ -195,7 +197,8 @@ void gather_sky_by(const Walk& walk, Segment& line, const FogPoint& fog, size_t 
         [&](vec3 direction) { return fog.density(snapshot, cosine(direction)); });
 }
 
-// Of thin fog at one distance of each medium's range; thicker fog asks where paths collide with it.
+// Adds environment light scattered by thin fog at one sampled distance per medium; thicker fog scatters it at
+// collisions.
 void gather_sky_on_the_way(const Walk& walk, Segment& line) {
     if (!walk.turns) return;
     FogPoint& fog = walk.scratch.fog;
@@ -215,7 +218,7 @@ void gather_sky_at_collision(const Walk& walk, Segment& line, const FogPoint& fo
             gather_sky_by(walk, line, fog, m, 1 / fog.total);
 }
 
-// Light that reaches the point of a collision, straight from lights and glowing surfaces.
+// Adds direct light at a collision: of lights, fire, the environment and emissive surfaces.
 void gather_at_collision(const Walk& walk, Segment& line, float distance, const FogPoint& fog, float peak) {
     const Snapshot& snapshot = walk.snapshot;
     const bool in_fog = walk.order == 0 || line.walker.in_fog;
@@ -266,7 +269,7 @@ void gather_fire_at_collision(const Walk& walk, Segment& line, float distance, c
     }
 }
 
-// Where the path collides with fog on this stretch it gathers light and turns.
+// If the path collides with fog on this segment, gathers light there and scatters the path.
 void collide(const Walk& walk, Segment& line) {
     const Snapshot& snapshot = walk.snapshot;
     float nearest = line.end;

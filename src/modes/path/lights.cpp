@@ -1,4 +1,4 @@
-// Chances of lights and of distances.
+// Sampling of lights, and of distances along lines.
 #include "modes/path/lights.h"
 
 #include "scene/area_shape.h"
@@ -11,8 +11,8 @@
 
 namespace tyndall {
 namespace {
-// Roughly what a light's filter leaves of it on a line, and never nothing: where none arrives chances may be small, but
-// chances that are 0 must be right.
+// Estimated mean transmission of a light's filter along a line, never 0: probabilities may be small where no light
+// arrives, but 0 only where none can.
 float filter_mean(const Light& light, const Ray& line, const LineLight& along) {
     constexpr int places = 8;
     constexpr float certain = 0.05f;
@@ -28,7 +28,7 @@ float filter_mean(const Light& light, const Ray& line, const LineLight& along) {
 
 float volume_brightness(const Light& light) { return luminance(light.intensity) * light.volume_scale; }
 
-// From the first fog to the last; of fog without end what lies within 8 optical depths or in the scene.
+// From the first fog to the last; unbounded fog counts up to 8 optical depths or the end of the scene.
 Interval<float> fog_stretch(const Snapshot& snapshot, const Ray& line) {
     Interval<float> stretch{infinity, 0};
     for (const Medium& medium : snapshot.media) {
@@ -43,14 +43,14 @@ Interval<float> fog_stretch(const Snapshot& snapshot, const Ray& line) {
     return stretch;
 }
 
-// What is expected to arrive at a point, to pick lights by.
+// Estimated irradiance at a point, for picking lights.
 LightSample expected(const Light& light, vec3 point) {
     LightSample arriving = arrival(light, point);
     if (light.area) arriving.irradiance = rough_arrival(light, point);
     return arriving;
 }
 
-// The cosine that a surface can make at most of a light that is seen at `cosine` in its middle.
+// Upper bound on a surface's cosine to any point of a light; `cosine`: that to its center.
 float expected_cosine(const Light& light, vec3 point, float cosine) {
     if (!light.area) return std::max(0.0f, cosine);
     const float reach = glm::length(light.area->half), distance = glm::distance(point, light.area->center);

@@ -1,4 +1,4 @@
-// Which light a path turns to next, and how far along a line through fog it looks for it.
+// Sampling of lights for points of a path, and of distances along lines through fog.
 #pragma once
 #include "base/math.h"
 #include "integrate/equi_angular.h"
@@ -11,22 +11,23 @@ struct Light;
 struct Snapshot;
 struct SurfacePoint;
 
-// One light along a line: distances are picked even in angle around a local light, even in
-// length under the sun.
+// One light along a line: distances are sampled uniformly in angle for a local light (equi-angular), uniformly in
+// length for a sun.
 struct LineLight {
-    Interval<float> reach;      // of the line, where there is fog and the light can be; empty = nowhere
+    Interval<float> reach;      // part of the line with fog that the light can reach; empty = none
     EquiAngular<double> angles; // of `reach`, seen from a local light
-    float chance = 0;           // of being picked among the lights
+    float chance = 0;           // probability of picking this light
 
     float distance(float u) const;
-    float density(float t) const; // of the distances picked, 1/m
+    float density(float t) const; // pdf of distances, 1/m
 };
 
-// All lights along a line that ends at line.t_max, in the order of the snapshot. Chances are in proportion to the light
-// that would arrive on the line without fog and shadows; all 0 when there is none.
+// All lights along a line that ends at line.t_max, in the order of the snapshot. Probabilities are proportional to the
+// light that would arrive on the line without fog and shadows; all 0 if there is none.
 void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights);
 
-// A light for a point, picked in proportion to what would arrive there without fog and shadows; chance 0 = none.
+// A light picked for a point, with a probability proportional to the light that would arrive there without fog and
+// shadows; chance 0 = none.
 struct LightPick {
     int light = 0;
     float chance = 0;

@@ -1,4 +1,4 @@
-// How path tracing is off: it is not, but some paths are left out or long.
+// Limitations of path: it is unbiased, but paths may be cut off or very long.
 #pragma once
 #include "modes/limitation.h"
 

@@ -1,4 +1,4 @@
-// The truth: unbiased path tracing of light that scatters any number of times, in fog and on surfaces.
+// The ground truth: unbiased path tracing with multiple scattering in fog and on surfaces.
 #include "integrate/lights/field_light.h"
 #include "modes/mode.h"
 #include "modes/path/limitations.h"
@@ -23,7 +23,7 @@ bool has_emission(const PathTracer& tracer) {
     return false;
 }
 
-// Whether light from all around is the same on a shadow ray and on a line that leaves the scene.
+// Whether shadow rays and lines that leave the scene see the same environment light, so that MIS can combine both.
 bool finds_sky(const Snapshot& snapshot) {
     return snapshot.environment && snapshot.environment->shadows && snapshot.environment->casters < 0;
 }

@@ -1,4 +1,4 @@
-// Settings of the path tracer: rows, presets, and the ladder from quick to careful.
+// Settings of path: rows, and the ladder from fastest to most accurate.
 #include "modes/path/settings.h"
 #include "modes/mode.h"
 #include "modes/settings_rows.h"

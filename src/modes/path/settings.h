@@ -1,4 +1,4 @@
-// For the row of path in the table.
+// Settings of path, for the mode's row of the table.
 #pragma once
 #include "modes/settings.h"
 

@@ -1,4 +1,4 @@
-// The walk: lines, the surfaces on them, and turns.
+// The path-tracing loop: lines, the surfaces on them, and scattering.
 #include "modes/path/tracer.h"
 
 #include "modes/path/faces.h"
@@ -9,7 +9,7 @@
 
 namespace tyndall {
 namespace {
-// Where a ray of the camera lies on the picture, 0..1 from the upper left.
+// Position of a camera ray in the image, 0..1 from the upper left.
 vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
     const Camera& camera = tracer.camera;
     const float aspect = static_cast<float>(tracer.size.x) / tracer.size.y;
@@ -19,7 +19,7 @@ vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
         screen = {glm::dot(offset, camera.right), glm::dot(offset, camera.up)};
     } else {
         const float along = glm::dot(ray.direction, camera.forward);
-        // Through the lens, the pinhole's ray leads to the same point in focus.
+        // With a lens, the pinhole's ray leads to the same point in the plane of focus.
         const vec3 direction =
             camera.lens ? ray.direction + (ray.origin - camera.position) * (along / camera.lens.focus) : ray.direction;
         const float depth = along * std::tan(0.5f * camera.vertical_fov);
@@ -28,7 +28,7 @@ vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
     return {0.5f * (screen.x / aspect + 1), 0.5f * (1 - screen.y)};
 }
 
-// Chance per steradian with which a glowing surface point is picked as a target from where the line began.
+// Solid-angle pdf with which light sampling at the start of the line picks this point of an emissive surface.
 float target_density(const PathTracer& tracer, const Segment& line, const SurfacePoint& surface, int instance,
                      int triangle) {
     const float density = tracer.glow ? glow_density(*tracer.glow, instance, triangle) : 0;
@@ -81,7 +81,7 @@ void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surf
               line.walker.in_fog);
 }
 
-// Lambert: directions by their cosine, which leaves the base colour as weight.
+// Lambertian reflection: directions are sampled by their cosine, so that the weight is the base color.
 void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) {
     const vec2 u = line.numbers(use_bounce);
     const float cosine = std::sqrt(std::max(0.0f, 1 - u.x));
@@ -92,7 +92,7 @@ void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) 
     scatter(walk, line, {{origin, direction}, surface.base_color, cosine / pi, sky_scale}, line.walker.in_fog);
 }
 
-// Ambient light, and the environment's share of what was not found by aiming at it (balance heuristic).
+// Ambient light, and the environment's with its MIS weight against light sampling (balance heuristic).
 vec3 surroundings(const Walk& walk, const Segment& line) {
     const PathVertex& from = line.walker;
     if (!(from.sky_scale > 0)) return walk.snapshot.ambient;
@@ -102,7 +102,7 @@ vec3 surroundings(const Walk& walk, const Segment& line) {
     return walk.snapshot.ambient + environment_radiance(environment, from.ray.direction) * weight;
 }
 
-// Nothing more is met: the background for the eye, the surroundings for everything else.
+// The line leaves the scene: adds the background for the eye, the surroundings for other lines.
 void leave(const Walk& walk, Segment& line) {
     if (walk.order == 0)
         walk.results[line.walker.lane].background +=
@@ -126,7 +126,7 @@ void start_lines(const Walk& walk) {
     walk.scratch.walkers.clear();
 }
 
-// The next stretch of every line, up to a surface or out of the scene.
+// Finds the next segment of every line, up to a surface or out of the scene.
 void find_ends(const Walk& walk, Ray* tested, Hits& hits) {
     const std::vector<Segment>& lines = walk.scratch.lines;
     for (size_t i = 0; i < lines.size(); ++i) {
@@ -143,7 +143,7 @@ void find_ends(const Walk& walk, Ray* tested, Hits& hits) {
     }
 }
 
-// The lights' faces that the eye sees before any surface: ends lines there. -1 = none.
+// Finds the area lights that the eye sees in front of any surface, and ends lines there. -1 = none.
 void find_faces(const Walk& walk, const Ray* tested, Hits& hits, std::span<int> faces) {
     for (size_t i = 0; i < faces.size(); ++i) {
         Segment& line = walk.scratch.lines[i];
@@ -153,7 +153,7 @@ void find_faces(const Walk& walk, const Ray* tested, Hits& hits, std::span<int> 
     }
 }
 
-// The eye sees the face of a light, and nothing beyond.
+// Adds the face of a light that the eye sees, and ends the line.
 void meet_face(const Walk& walk, Segment& line, const Light& light) {
     const vec3 radiance = radiance_of(light) * face_picture(*light.area, line.rest.at(line.end));
     add_light(walk, line, radiance * line.through, OtherLight::emission, line.walker.in_fog);
@@ -238,7 +238,7 @@ void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, 
     const float share = line.through * surface.alpha;
     const bool held = walk.order == 0 && is_matte(walk.snapshot, instance); // seen by the camera
     if (held) walk.results[line.walker.lane].held += share;
-    // A glowing surface is seen even where it lights nothing.
+    // The eye sees emissive surfaces even if they illuminate nothing.
     if (!held && (walk.tracer.surfaces_emit || walk.order == 0) && max_component(surface.emission) > 0) {
         const float aimed =
             line.walker.density > 0 ? target_density(walk.tracer, line, surface, instance, triangle) : 0;
@@ -251,7 +251,7 @@ void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, 
         if (walk.turns && !held) bounce(walk, line, surface);
     }
 
-    // On to what lies behind, off the surface by more than rounding.
+    // Continues behind the surface, offset by more than rounding errors.
     line.through *= 1 - surface.alpha;
     const float t = line.end;
     line.rest.origin = line.rest.at(t);
@@ -274,7 +274,7 @@ void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scat
     }
     const int orders = tracer.settings.orders;
     for (int order = 0; order <= orders && !scratch.walkers.empty(); ++order) {
-        // What this limit cuts off would be missing: the sample does not count as valid.
+        // Light of paths that this limit cuts off is missing: the sample is marked invalid.
         if (order == all_orders)
             for (const PathVertex& walker : scratch.walkers) results[walker.lane].validity = 0;
         const Walk walk{tracer, tracer.snapshot, batch, results, scratch, order, order < orders};

@@ -10,7 +10,7 @@
 namespace tyndall {
 inline constexpr int max_layers = 64;    // BLEND surfaces on one line; the last counts as opaque
 inline constexpr int certain_orders = 4; // scatterings before Russian roulette may end a path
-// What numbers are for.
+// Purposes of random numbers, each with its own sequence.
 enum Use : uint32_t {
     use_distance,
     use_free_path,
@@ -31,29 +31,29 @@ enum Use : uint32_t {
     use_sky_distance
 };
 
-// The end of a path: where its next line starts and what it carries.
+// The end of a path: where its next line starts, and its throughput.
 struct PathVertex {
     size_t lane = 0;
     Ray ray;
-    float skip = 0;      // surfaces nearer than this are not met
-    vec3 throughput{1};  // share of light that comes down the path
-    float density = 0;   // chance per steradian of the line's direction; 0 at the eye
-    float sky_scale = 0; // of the environment's light on what the line started from; 0 = it does not look for it
-    float peak = 0;      // of the phase function it started from, 1/sr, where that finds faces of lights; else 0
+    float skip = 0;      // surfaces nearer than this are ignored
+    vec3 throughput{1};  // fraction of light that arrives at the eye along the path
+    float density = 0;   // solid-angle pdf of the line's direction; 0 at the eye
+    float sky_scale = 0; // factor on environment light that the line finds; 0 = it does not look for it
+    float peak = 0;      // of the phase function at its start, 1/sr, if the line looks for faces of lights; else 0
     bool in_fog = false; // the path's first event was in fog
     SamplePlace place{0, 0};
     uint32_t id = 0;
 };
 
-// A walker's current line.
+// The current line of a path.
 struct Segment {
     PathVertex walker;
     Ray rest;                         // from the last BLEND surface on
     float skip = 0, travelled = 0;    // travelled: up to the start of `rest`
-    float end = 0;                    // of the current stretch, along `rest`
-    float through = 1;                // light that passes the fog and the surfaces so far
+    float end = 0;                    // of the current segment, along `rest`
+    float through = 1;                // transmittance of fog and surfaces so far
     int instance = -1, triangle = -1; // surface just passed
-    bool walking = true;              // the path has not turned off yet
+    bool walking = true;              // the path has not scattered yet
     int order = 0, layer = 0;
     RandomStream random;
 
@@ -65,16 +65,16 @@ struct Segment {
     bool open() const { return walking || through > 0; }
 };
 
-// Densities of all media at a point, and what follows from them.
+// Extinctions and albedos of all media at a point.
 struct FogPoint {
     vec3 position{0};
     std::vector<float> extinction; // 1/m, of each medium
-    std::vector<vec3> albedo;      // of those where it differs from point to point
+    std::vector<vec3> albedo;      // of media with an albedo field
     float total = 0;
 
     vec3 albedo_of(const Optics& optics, size_t m) const { return optics.albedo_field ? albedo[m] : optics.albedo; }
 
-    // Σ albedo p, and Σ p, each weighted by the media's shares of the extinction.
+    // Σ albedo p, and Σ p, weighted by each medium's fraction of the extinction.
     vec3 scattered(const Snapshot& snapshot, float cosine) const {
         vec3 sum(0);
         for (size_t m = 0; m < extinction.size(); ++m)
@@ -92,7 +92,7 @@ struct FogPoint {
     }
 };
 
-// What a thread uses again from batch to batch.
+// Memory that a thread reuses from batch to batch.
 struct PathScratch {
     std::vector<Segment> lines;
     std::vector<PathVertex> walkers;
@@ -101,7 +101,7 @@ struct PathScratch {
     FogPoint fog;
 };
 
-// All that one batch needs.
+// State of one batch.
 struct Walk {
     const PathTracer& tracer;
     const Snapshot& snapshot;
@@ -112,25 +112,25 @@ struct Walk {
     bool turns = true; // whether paths may scatter at the end of the current lines
 };
 
-// Adds light that comes down the line undimmed by what the line has met so far: other light, or that of a light of the
-// snapshot.
+// Adds radiance times the path's throughput, without the line's attenuation, as other light or as that of a light of
+// the snapshot.
 void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight light, bool in_fog);
 void add_light(const Walk& walk, const Segment& line, vec3 radiance, size_t light, bool in_fog);
 
-// An estimate of the share of light that passes all fog between two distances of the current stretch.
+// Unbiased estimate of the transmittance of fog between two distances of the current segment (ratio tracking).
 float passing_share(const Walk& walk, Segment& line, Interval<float> range);
 
-// Queues a connection that brings `light` down the line when nothing is in its way.
+// Queues a connection that contributes `light` times the path's throughput if nothing is in its way.
 void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog);
 
-// Chance per metre with which a path finds a place of the fire by colliding there, as it counts beside other ways.
+// Pdf, 1/m, with which a path finds a point of the fire by colliding there, scaled for MIS against other techniques.
 float colliding_chance(const Snapshot& snapshot, vec3 position, int& lookups);
 
-// A place in glowing fog to aim at from the line.
+// Samples a point in emissive fog for a connection.
 EmissivePlace pick_fire(const Walk& walk, const Segment& line);
 
-// Light from all around by one picked direction, onto a point that scatters `share(direction)`, 1/sr, into the line,
-// and picks directions itself with chances of `density(direction)`, 1/sr.
+// Adds environment light from one sampled direction, at a point that scatters `share(direction)`, 1/sr, into the line
+// and samples directions itself with the pdf `density(direction)`, 1/sr.
 template<class Share, class Density>
 void gather_sky(const Walk& walk, Segment& line, vec3 point, vec3 face_normal, float scale, bool in_fog,
                 const Share& share, const Density& density) {
@@ -142,20 +142,20 @@ void gather_sky(const Walk& walk, Segment& line, vec3 point, vec3 face_normal, f
     queue(walk, line, connection, share(sky.direction) * sky.radiance * (scale / (sky.density + own)), in_fog);
 }
 
-// Where a path turns: its next line, the share of this one's light that it brings, and what is said of PathVertex.
+// A scattering event: the path's next line, its weight, and values for its PathVertex.
 struct Turn {
     Ray ray;
     vec3 share{1};
     float density = 0, sky_scale = 0, peak = 0;
 };
 
-// Starts the walker's next line, unless roulette ends the path.
+// Starts the path's next line, unless Russian roulette ends the path.
 void scatter(const Walk& walk, const Segment& line, const Turn& turn, bool in_fog);
 
-// Light scattered by the fog of the current stretch, from lights; then whether the path collides there and turns.
+// Adds light from the fog of the current segment, then tests whether the path collides there and scatters.
 void follow_fog(const Walk& walk, Segment& line);
 
-// The surface at the end of the current stretch: its own light, light that falls on it, whether the path turns there.
-// Moves the line on to what lies behind, or ends it.
+// Handles the surface at the end of the current segment: adds its emission and the direct light it reflects, may
+// scatter the path there, and moves the line on to what lies behind.
 void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, int instance, int triangle);
 }

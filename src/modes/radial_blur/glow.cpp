@@ -1,4 +1,4 @@
-// What the radial blur smears: the sky around lights, or highlights.
+// The sources of the radial blur: bright sky around lights, or highlights of the image.
 #include "modes/radial_blur/glow.h"
 #include "modes/radial_blur/settings.h"
 
@@ -20,13 +20,13 @@ float share_above(vec3 color, float threshold) {
     return bright > threshold ? (bright - threshold) / bright : 0;
 }
 
-// A camera ray, to the light's planar depth.
+// Adds a camera ray that ends at the light's planar depth.
 void set_ray(Occluders::ShadowRays& rays, int i, const Camera& camera, const Ray& ray, float depth) {
     const float along = std::max(glm::dot(ray.direction, camera.forward), 1e-6f);
     rays.set(static_cast<size_t>(i), {ray.origin, ray.direction, depth / along}, camera.near / along);
 }
 
-// `light`: what shadows it hides its glow; a light without shadows is hidden by all surfaces.
+// Fraction of the glow that surfaces let through: those that shadow the light, or all for a light without shadows.
 void see_through(const Snapshot& snapshot, const Light& light, const Occluders::ShadowRays& rays, float share[16]) {
     const auto& occluders = light.shadows ? shadow_casters(light, snapshot) : snapshot.occluders;
     if (occluders && !occluders->empty()) return occluders->transmission(rays, share);
@@ -69,9 +69,9 @@ BlurGlow highlights_glow(const Image<vec3>& color, float threshold, ivec2 size) 
     return glow;
 }
 
-// The published sum, Σ decay^i · weight · sample_i / 32 with i from 0 to 31 along `density` of the line. Other numbers
-// of samples have their decay stretched over the same line and the same sum of weights; each lies in the middle of its
-// part of the line, so that more of them change nothing but smoothness.
+// The published sum, Σ decay^i · weight · sample_i / 32 with i from 0 to 31 along `density` of the line (Mitchell
+// 2007). For other numbers of samples, the decay is stretched over the same line and the weights have the same sum;
+// samples are at the centers of equal segments, so that more of them only make the result smoother.
 BlurLine make_line(const RadialBlurSettings& settings) {
     BlurLine line{settings.density, {}};
     double published = 0, sum = 0;

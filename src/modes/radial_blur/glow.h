@@ -1,38 +1,38 @@
-// Pictures of brightness that the radial blur smears.
+// Images of brightness that the radial blur filters.
 #pragma once
 #include "base/image.h"
 #include "modes/radial_blur/radial_blur.h"
 #include "modes/radial_blur/settings.h"
 
 namespace tyndall {
-// One plane of brightness, or three of colour, in a black frame two pixels wide, so that bilinear look-ups up to a
-// pixel outside need no care.
+// One plane of brightness, or three of color, with a black border two pixels wide, so that bilinear look-ups up to a
+// pixel outside need no bounds checks.
 struct BlurGlow {
     static constexpr int frame = 2;
-    ivec2 size{0}; // within the frame
+    ivec2 size{0}; // without the border
     std::vector<Image<float>> planes;
 
     BlurGlow(ivec2 size_, size_t count) : size(size_), planes(count, Image<float>(size_ + 2 * frame)) {}
     float* row(size_t plane, int y) { return &planes[plane].at(frame, y + frame); }
 };
 
-// Bright sky around the light where nothing stands before it; BLEND surfaces let their share through.
+// Bright sky around the light where no surface is in front of it; BLEND surfaces transmit 1 - alpha.
 BlurGlow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurLight& light, ivec2 size);
 
-// What is brighter than the threshold, less the threshold.
+// The image's light above the threshold in luminance.
 BlurGlow highlights_glow(const Image<vec3>& color, float threshold, ivec2 size);
 
-// Samples along `density` of the line from a pixel to the light, and their weights.
+// Samples along the fraction `density` of the line from a pixel to the light, and their weights.
 struct BlurLine {
     float density;
     std::vector<float> weights;
 };
 BlurLine make_line(const RadialBlurSettings& settings);
 
-// Sums along the lines to `center`, their samples jittered as the view asks. `radius`: how far from the centre the
-// source is not black.
+// Weighted sums along the lines to `center`, with samples jittered by the view's pattern. `radius`: distance from the
+// center beyond which the source is black.
 BlurGlow blurred(const BlurGlow& source, const BlurLine& line, vec2 center, float radius, const View& view);
 
-// Spreads a glow over the full picture, in a colour, and adds it to `sum` and, unless null, to `part`.
+// Upsamples a glow to the full image, multiplies it by `color` and adds it to `sum` and, unless null, to `part`.
 void add_glow(const BlurGlow& glow, vec3 color, Image<vec3>& sum, Image<vec3>* part);
 }

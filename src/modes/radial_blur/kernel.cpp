@@ -1,4 +1,4 @@
-// The sums of the radial blur, for sixteen pixels of a row at once.
+// The sums of the radial blur, for 16 pixels of a row at a time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "modes/radial_blur/kernel.cpp"
 #include <hwy/foreach_target.h>
@@ -17,7 +17,7 @@ namespace tyndall::HWY_NAMESPACE {
 namespace {
 alignas(64) constexpr float lane_numbers[16] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
 
-// Middles of the pixels of a row from x0 on, none beyond its last.
+// Centers of the pixels of a row from x0 on, clamped to its last.
 HWY_INLINE Floats middles(int x0, int width) {
     const float last = static_cast<float>(width) - 0.5f;
     return min(load(lane_numbers) + (static_cast<float>(x0) + 0.5f), last);
@@ -44,13 +44,13 @@ struct Taps {
     }
 };
 
-// Samples first + i·step of sixteen pixels, i within low..high.
+// Sample positions (x, y) + i·step of 16 pixels; those that may not be black have i in low..high.
 struct Lines {
     Floats x, y, step_x, step_y;
     int low, high;
 };
 
-// Narrows the numbers i for which from + i·step lies within a pixel of 0..size.
+// Narrows low..high to the i for which from + i·step lies within a pixel of 0..size.
 HWY_INLINE void keep_inside(const Floats& from, const Floats& step, int size, Floats& low, Floats& high) {
     const Mask16 still = abs(step) < 1e-12f;
     const Floats inverse = 1.0f / select(still, 1.0f, step);
@@ -65,7 +65,7 @@ HWY_INLINE Lines lines_to(vec2 center, float radius, const BlurLine& line, ivec2
     lines.step_x = (center.x - x) * (line.density / count), lines.step_y = (center.y - y) * (line.density / count);
     lines.x = fused(shift, lines.step_x, x), lines.y = fused(shift, lines.step_y, y);
 
-    // What lies outside is black: the loop runs over what any of the sixteen has inside.
+    // Samples outside are black: the loop covers those that are inside for any of the 16 pixels.
     Floats low = 0.0f, high = count - 1;
     const Floats off_x = center.x - lines.x, off_y = center.y - lines.y;
     const Floats away = sqrt(fused(off_x, off_x, off_y * off_y));
@@ -78,7 +78,6 @@ HWY_INLINE Lines lines_to(vec2 center, float radius, const BlurLine& line, ivec2
     return lines;
 }
 
-// Sums of `planes` planes at once.
 template<size_t planes>
 HWY_INLINE void sum_along(const Lines& lines, const BlurLine& line, const BlurGlow& source, Floats* sums) {
     const float right = static_cast<float>(source.size.x) + 1, bottom = static_cast<float>(source.size.y) + 1;
@@ -115,7 +114,7 @@ void add_row_kernel(const BlurGlow& glow, vec3 color, int y, Image<vec3>& sum, I
     const size_t planes = glow.planes.size();
     alignas(64) float value[3][16];
     for (int x0 = 0; x0 < sum.size.x; x0 += 16) {
-        // Held at the border, where the blurred picture ends half a pixel early.
+        // Clamped at the border, where the blurred image ends half a pixel early.
         const Floats across = min(max(middles(x0, sum.size.x) * scale.x, 0.5f), last.x);
         const Taps taps(across, down, glow.planes[0].size.x);
         for (size_t p = 0; p < planes; ++p) store(taps.of(glow.planes[p]), value[p]);

@@ -1,4 +1,4 @@
-// Where the radial blur sees the lights, and how bright it takes them for.
+// Positions of lights in the image for the radial blur, and their estimated brightness.
 #include "modes/radial_blur/radial_blur.h"
 #include "modes/radial_blur/settings.h"
 
@@ -10,21 +10,22 @@
 
 namespace tyndall {
 namespace {
-constexpr float far_away = 1e5f; // extents of the scene: a sun's place in the picture is that of a point so far off
+constexpr float far_away = 1e5f; // distance, in scene extents, of the point that stands for a sun
 
 float smooth(float x) {
     const float t = std::clamp(x, 0.0f, 1.0f);
     return t * t * (3 - 2 * t);
 }
 
-// Mean over a disc around the sun, whose edge is so far off by its cosine. A single lobe is taken by its middle.
+// Mean of the phase function over a disk around the sun, given the cosine of its angular radius. A single lobe is
+// evaluated at the center.
 float glow_of(const Phase& phase, double cosine) {
     if (!phase.shape) return phase_value(phase, 1);
     return static_cast<float>((1 - share_below(*phase.shape, cosine)) / (2 * std::numbers::pi * (1 - cosine)));
 }
 
-// What homogeneous fog makes of a sun along the line of sight straight at it: Σ albedo p (1 - e^-depth). `angle`: of
-// the disc it shows as, from its middle.
+// Radiance of homogeneous fog along the line of sight straight at a sun: Σ albedo p (1 - e^-depth). `angle`: angular
+// radius of its disk in the image.
 vec3 sun_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards, double angle) {
     vec3 sum(0);
     for (const Medium& medium : homogeneous_media(snapshot.media)) {
@@ -34,8 +35,9 @@ vec3 sun_brightness(const Snapshot& snapshot, const Light& light, const Ray& tow
     return sum * light.intensity * light.volume_scale;
 }
 
-// Of a lamp: the mean over its disc. At h from it isotropic fog shows I σs / (4 h), on average twice as much as at the
-// disc's edge; a spot has its share of that. σs and what dims it are those of the way to the eye.
+// Mean radiance of fog over a lamp's disk. At a distance h from the lamp, isotropic fog shows I σs / (4 h), on average
+// over the disk twice as much as at its edge; a spot has the fraction of that in its solid angle. σs and the
+// attenuation are means of the segment to the eye.
 vec3 lamp_brightness(const Snapshot& snapshot, const Light& light, const Ray& towards, float radius) {
     vec3 sum(0);
     float whole = 0;
@@ -66,7 +68,7 @@ std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, c
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {
         const Light& light = snapshot.lights[i];
         const bool sun = is_distant(light);
-        if (sun && view.camera.ortho_height > 0) continue; // its rays are parallel in the picture
+        if (sun && view.camera.ortho_height > 0) continue; // its rays are parallel in the image
         const float far = far_away * snapshot.extent;
         const vec3 at = sun ? view.camera.position - far * light.direction : light.position;
         const std::optional<vec2> position = pixel_of(view.camera, view.size, at);

@@ -14,7 +14,7 @@
 
 namespace tyndall {
 namespace {
-// Where a light is on the picture at one of the shutter's moments.
+// Position of a light in the image at one of the shutter's time samples.
 std::optional<vec2> place_of(const std::string& light, const View& view, const Snapshot& moment, const Camera& camera) {
     const auto found = std::ranges::find(moment.lights, light, &Light::name);
     if (found == moment.lights.end()) return {};

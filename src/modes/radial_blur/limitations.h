@@ -1,4 +1,4 @@
-// How radial blur is off.
+// Limitations of radial-blur.
 #pragma once
 #include "modes/limitation.h"
 

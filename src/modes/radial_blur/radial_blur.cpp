@@ -1,5 +1,5 @@
-// Radial blur: bright places smeared away from the light's place in the picture (Mitchell 2007, GPU Gems 3, chapter
-// 13).
+// Radial blur: bright regions blurred along the lines from the light's position in the image (Mitchell 2007, GPU Gems
+// 3, chapter 13).
 #include "modes/radial_blur/radial_blur.h"
 #include "modes/radial_blur/limitations.h"
 #include "modes/radial_blur/settings.h"

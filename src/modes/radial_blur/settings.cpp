@@ -1,4 +1,4 @@
-// Settings of the radial blur, by their published names: rows, presets, and the ladder from quick to careful.
+// Settings of radial-blur, with their published names: rows, and the ladder from fastest to most accurate.
 #include "modes/radial_blur/settings.h"
 #include "modes/mode.h"
 #include "modes/settings_rows.h"

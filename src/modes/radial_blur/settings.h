@@ -11,19 +11,19 @@ enum class BlurSource { occlusion, highlights };
 struct RadialBlurSettings {
     BlurSource source = BlurSource::occlusion;
     int samples = 64;       // along the line to the light
-    float density = 0.95f;  // share of that line they cover
-    float decay = 0.97f;    // from one of 32 samples to the next
-    float weight = 1;       // of every sample
-    float exposure = 1;     // of their sum
-    float threshold = 1;    // highlights: luminance that counts as bright
-    float size = 2.5f;      // occlusion: radius of the bright sky around a sun, in picture heights
-    float lamp_size = 0.3f; // occlusion: radius of the bright disc of other lights, metres
-    float fade = 2;         // how far outside the picture a light may be before its rays have faded, in half pictures
+    float density = 0.95f;  // fraction of that line they cover
+    float decay = 0.97f;    // factor from one of 32 samples to the next
+    float weight = 1;       // factor on each sample
+    float exposure = 1;     // factor on their sum
+    float threshold = 1;    // highlights: luminance above which pixels count as bright
+    float size = 2.5f;      // occlusion: radius of the bright sky around a sun, in image heights
+    float lamp_size = 0.3f; // occlusion: radius of the bright disk of other lights, meters
+    float fade = 2;         // distance outside the image at which a light's rays have faded out, in half image sizes
     Resolution resolution = Resolution::half;
-    bool fog = true; // what lies behind fades in homogeneous fog
+    bool fog = true; // homogeneous fog attenuates surfaces and background
 };
 
-// For its row of the table.
+// For the mode's row of the table.
 void append_radial_blur_rows(std::vector<SettingRow>& rows);
 std::vector<Rung> radial_blur_rungs();
 }

@@ -9,7 +9,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// The steps of the rays themselves: transmittance and glow.
+// Steps along the rays: transmittance, and the weights for emission and ambient light.
 struct Totals {
     Floats transmittance, taken;
 };
@@ -40,7 +40,7 @@ Totals march_rays(const Packet& packet) {
     return totals;
 }
 
-// What a sun adds in the steps of the rays. Its phase is the same all along a ray.
+// Sunlight scattered at the steps of the rays. The phase function is constant along a ray.
 void march_sun(const Packet& packet, size_t index) {
     const Scratch& scratch = packet.scratch;
     const RaysInMap rays(packet, index);
@@ -70,7 +70,7 @@ void march_sun(const Packet& packet, size_t index) {
               scattered[m].data());
 }
 
-// Gives what the media scattered its colour.
+// Multiplies scattered amounts by albedos and light intensities, and sums them to one ray's radiance.
 void color_ray(const Packet& packet, size_t lane, Scatter& result) {
     const Snapshot& snapshot = packet.march.snapshot;
     const RayBatch& batch = packet.batch;
@@ -96,7 +96,7 @@ void color_ray(const Packet& packet, size_t lane, Scatter& result) {
     }
 }
 
-// How far the steps of a ray can be trusted: the share of a step that the fog's finest detail takes up.
+// Validity of a ray's steps: size of the fog's finest detail as a fraction of a step, at most 1.
 float trust(const ShadowMapMarch& march, float first, float last) {
     const float step = (last - first) / static_cast<float>(march.settings.steps);
     return step > march.detail ? march.detail / step : 1.0f;

@@ -1,4 +1,4 @@
-// The march with shadow maps of one packet, apart from its preparation.
+// Ray marching with shadow maps for one packet of rays, separate from its preparation.
 #pragma once
 #include "integrate/ray_batch.h"
 #include "modes/settings.h"
@@ -10,34 +10,34 @@
 #include <vector>
 
 namespace tyndall {
-inline constexpr int map_lookups = 4; // of each step, in the shadow maps: narrow shafts need more than fog does
+inline constexpr int map_lookups = 4; // shadow-map look-ups per step: narrow shafts need more samples than fog does
 
-// What the march needs, made once per frame.
+// Data for the march, made once per frame.
 struct ShadowMapMarch {
-    Snapshot snapshot; // media and lights as the settings see them
+    Snapshot snapshot; // media and lights with the settings applied
     ShadowMapSettings settings;
     StyleSettings style;
     Camera camera;                  // for style.range
     std::vector<LightDepth> depths; // one per light
     std::vector<ConeFalloff> cones; // one per light
     ShadowMaps maps;                // one per light
-    float detail = infinity;        // metres: the finest detail of the fog
-    bool colored = false;           // a light has a coloured gobo
-    bool narrow_lobe = false;       // of the fog: steps in the light of lamps crowd where light goes straight on
+    float detail = infinity;        // meters: the finest detail of the fog
+    bool colored = false;           // a light has a colored gobo
+    bool narrow_lobe = false;       // the fog's phase function has a narrow lobe
 };
 
-// Smallest detail of the brick media, metres: that of a noise's last octave is some voxels wide.
+// Size of the finest detail of the brick media, meters: a noise's last octave spans several voxels.
 float fog_detail(std::span<const Medium> media);
 
-inline constexpr int min_uneven_steps = 8; // fewer are even
+inline constexpr int min_uneven_steps = 8; // fewer steps are equal
 
-// The borders of `count` steps along a ray from first to last fog, t[0], t[stride], ...; the last is t[count·stride].
-// Of fog that goes on far beyond the scene the scene gets most steps, and what follows ever longer ones. All equal when
-// there is no fog.
+// Boundaries of `count` steps along a ray from its first to its last fog: t[0], t[stride], ..., t[count·stride]. If the
+// fog extends far beyond the scene, most steps are inside the scene, and those behind it grow in length. All are equal
+// if the ray has no fog.
 void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* t, size_t stride);
 
-// Fog along up to 16 rays, in steps of homogeneous fog whose integral is exact: L += T J (1-e^-D)/σ, T *= e^-D
-// (Hillaire 2015, section 5.6.3). Suns are asked for at the steps of the ray; a local light has as many steps of its
-// own on what it reaches, where 1/r² is integrated exactly (Kulla & Fajardo 2012, section 4.1).
+// Fog along up to 16 rays, in steps of homogeneous fog integrated exactly: L += T J (1-e^-D)/σ, T *= e^-D (Hillaire
+// 2015, section 5.6.3). Suns are evaluated at the steps of the ray; a local light has the same number of its own steps
+// on the segment it reaches, where 1/r² is integrated exactly (Kulla & Fajardo 2012, section 4.1).
 void march_shadow_maps(const ShadowMapMarch& march, const RayBatch& batch, std::span<Scatter> results);
 }

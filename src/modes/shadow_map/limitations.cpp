@@ -17,14 +17,14 @@
 
 namespace tyndall {
 namespace {
-// Whether the picture shows where a light is.
+// Whether a light's position is in the image.
 bool is_seen(const View& view, const Light& light) {
     const std::optional<vec2> at = is_distant(light) ? std::nullopt : pixel_of(view.camera, view.size, light.position);
     return at && glm::all(glm::greaterThan(*at, vec2(0))) && glm::all(glm::lessThan(*at, vec2(view.size)));
 }
 
-// Edges of light that fall between steps: of shafts, and of the light around lamps that the image shows, those that
-// stand for fire included.
+// Reports edges of light that fall between steps: of shafts, and of the glow around lamps in the image, including the
+// lamps that stand for fire.
 void add_few_steps(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations) {
     constexpr int fine = 64;
     const int steps = settings.of<ShadowMapSettings>().steps;
@@ -44,7 +44,7 @@ void add_few_steps(const View& view, const Snapshot& snapshot, const Settings& s
 }
 
 Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    // What a march cannot do this one cannot either.
+    // The limitations of the march apply here too.
     Settings like = settings;
     like.fluence.orders = 1;
     like.march.visibility = Visibility::rays, like.terms.light = without_froxels(settings.terms.light);

@@ -1,4 +1,4 @@
-// How the march with shadow maps is off.
+// Limitations of shadow-map.
 #pragma once
 #include "modes/limitation.h"
 

@@ -1,5 +1,5 @@
-// Local lights of the march with shadow maps: their own steps on what they reach of each ray (see base/simd/simd.h for
-// how such files are compiled).
+// Local lights of the march with shadow maps, each with its own steps on the segment of a ray that it reaches (see
+// base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_SHADOW_MAP_LOCAL_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_SHADOW_MAP_LOCAL_SIMD_H
 #undef TYNDALL_MODES_SHADOW_MAP_LOCAL_SIMD_H
@@ -15,11 +15,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Optical depth from the eye to increasing t: linear between the borders of the rays' steps.
+// Optical depth from the eye to t, called with increasing t: linear between the boundaries of the rays' steps.
 struct DepthAlong {
     const Packet& packet;
     Ints lane;
-    Floats step = 0.0f; // the last one asked for, of each ray
+    Floats step = 0.0f; // of each ray, at the last call
 
     explicit DepthAlong(const Packet& on) : packet(on) {
         alignas(64) int32_t lanes[16];
@@ -44,10 +44,10 @@ struct DepthAlong {
     }
 };
 
-// What each ray sees of a local light: its stretch, and where the ray passes it.
+// The segment of each ray that a local light reaches, and the ray's closest approach to it.
 struct Passing {
     Floats low, high;     // empty where high <= low
-    Floats nearest, away; // t next to the light, and its distance there
+    Floats nearest, away; // t of the closest approach, and its distance from the light
 };
 
 Passing pass_light(const Packet& packet, const Light& light) {
@@ -73,8 +73,9 @@ Floats asinh(const Floats& value) {
     return load(v);
 }
 
-// Borders of the steps on a passage, counted from the point next to the light: x = scale·tan θ with even θ, or even x.
-// In fog with a narrow lobe x = scale·sinh y with even y: towards both ends each step halves the angle off the axis.
+// Boundaries of a local light's steps, measured from the closest approach: x = scale·tan θ with uniform θ, or uniform
+// x. In fog with a narrow phase lobe, x = scale·sinh y with uniform y: towards both ends, each step halves the angle to
+// the axis.
 struct Spaced {
     Floats low, high, scale, first, angle;
     bool even, narrow;
@@ -87,7 +88,7 @@ struct Spaced {
             first = asinh(low / scale), angle = (asinh(high / scale) - first) * (1 / static_cast<float>(steps));
             return;
         }
-        // Next to the light steps need not get shorter than what is far from it is long.
+        // Limits how short steps near the light get, relative to the segment's far end.
         scale = max(max(passing.away, max(abs(low), abs(high)) * 0.03f), 1e-12f);
         first = even ? low : atan(low / scale);
         angle = (even ? high - low : atan(high / scale) - first) * (1 / static_cast<float>(steps));
@@ -100,7 +101,7 @@ struct Spaced {
     }
 };
 
-// Share of a local light in one step that surfaces let through.
+// Fraction of a local light that surfaces let through to one step.
 HWY_INLINE Floats lit_share_of(const Packet& packet, const RaysInMap& rays, const EquiAngular16& turning,
                                const Floats& nearest) {
     const int lookups = rays.map.empty() ? 1 : map_lookups;
@@ -112,7 +113,7 @@ HWY_INLINE Floats lit_share_of(const Packet& packet, const RaysInMap& rays, cons
     return share * part;
 }
 
-// What all media scatter of light that a gobo colours.
+// Light colored by a gobo and scattered by all media.
 HWY_INLINE void add_tinted(const Packet& packet, size_t light, const Vec3s& tint, const Sixteen* extinctions,
                            const Floats& weight, const Floats& cosine) {
     for (size_t m = 0; m < packet.media(); ++m) {
@@ -125,7 +126,7 @@ HWY_INLINE void add_tinted(const Packet& packet, size_t light, const Vec3s& tint
     }
 }
 
-// The steps of a local light, on the part of each ray that it reaches.
+// Marches a local light's steps over the segment of each ray that it reaches.
 void march_light(const Packet& packet, size_t index, Floats& taken) {
     const ShadowMapMarch& march = packet.march;
     const Light& light = march.snapshot.lights[index];

@@ -1,5 +1,5 @@
-// The packet of the march with shadow maps, and what suns and local lights ask of it (see base/simd/simd.h for how such
-// files are compiled).
+// The ray packet of the march with shadow maps, and functions shared by suns and local lights (see base/simd/simd.h for
+// how such files are compiled).
 #if defined(TYNDALL_MODES_SHADOW_MAP_PACKET_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_SHADOW_MAP_PACKET_SIMD_H
 #undef TYNDALL_MODES_SHADOW_MAP_PACKET_SIMD_H
@@ -24,17 +24,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Memory that a thread keeps from packet to packet: plain floats, of 16 rays side by side.
+// Memory that a thread reuses from packet to packet: plain floats, for 16 rays each.
 using Sixteen = std::array<float, 16>;
 struct Scratch {
-    std::vector<float> border;       // of the steps: t
-    std::vector<float> depth;        // optical depth from the eye to each border
-    std::vector<Lit> lit;            // of each step: [light · steps + step], of suns
-    std::vector<float> weight;       // of each step: its length, times what the eye sees of it
-    std::vector<Sixteen> extinction; // of each medium in each step: [step · media + medium]
-    std::vector<Sixteen> glowing;    // ∫ of what each medium scatters of even light, before its albedo
-    std::vector<Sixteen> scattered;  // the same of each light, by each medium: [light · media + medium]
-    std::vector<Sixteen> tinted; // of lights with coloured gobos, by all media after their albedos: [light · 3 + c]
+    std::vector<float> border;       // t of the step boundaries
+    std::vector<float> depth;        // optical depth from the eye to each boundary
+    std::vector<Lit> lit;            // lit by suns, per step: [light · steps + step]
+    std::vector<float> weight;       // per step: its length times the fraction of its light that reaches the eye
+    std::vector<Sixteen> extinction; // per step and medium: [step · media + medium]
+    std::vector<Sixteen> glowing;    // ∫ of isotropic light scattered by each medium, before its albedo
+    std::vector<Sixteen> scattered;  // the same per light and medium: [light · media + medium]
+    std::vector<Sixteen> tinted;     // per light with a colored gobo, all media, albedo included: [light · 3 + c]
 };
 
 struct Packet {
@@ -54,7 +54,7 @@ struct Packet {
 
 HWY_INLINE void add(const Floats& value, Sixteen& sum) { store(load(sum.data()) + value, sum.data()); }
 
-// Intervals of rays inside a box of the world.
+// Intervals of rays inside a world-space box.
 HWY_INLINE Interval<Floats> inside_world_box(const Box& box, const Vec3s& origin, const Vec3s& direction,
                                              Interval<Floats> range) {
     clip_axis(origin.x, direction.x, box.low.x, box.high.x, range);
@@ -63,7 +63,7 @@ HWY_INLINE Interval<Floats> inside_world_box(const Box& box, const Vec3s& origin
     return range;
 }
 
-// Borders of the steps of all rays where they are even; false where a ray goes on far beyond the scene.
+// Sets the boundaries of equal steps for all rays; returns false if some ray's fog extends far beyond the scene.
 HWY_INLINE bool place_even_steps(const Packet& packet, const Floats& t_max) {
     Interval<Floats> stretch{infinity, 0.0f};
     for (const Medium& medium : packet.march.snapshot.media) {
@@ -105,7 +105,7 @@ Packet make_packet(const ShadowMapMarch& march, const RayBatch& batch, Scratch& 
     return packet;
 }
 
-// Extinction of all media at the points; `each` remembers them one by one.
+// Total extinction at the points; stores that of each medium in `each`.
 HWY_INLINE Floats extinction_at(const Packet& packet, const Vec3s& position, Sixteen* each) {
     Floats total = 0.0f;
     for (size_t m = 0; m < packet.media(); ++m) {
@@ -117,7 +117,7 @@ HWY_INLINE Floats extinction_at(const Packet& packet, const Vec3s& position, Six
     return total;
 }
 
-// The rays in the coordinates of a light's map.
+// The rays in a light's shadow-map coordinates.
 struct RaysInMap {
     const ShadowMap& map;
     Vec3s origin, direction;
@@ -129,17 +129,17 @@ struct RaysInMap {
     HWY_INLINE Floats lit_share(const Floats& t) const { return lit_share_at(map, at(t)); }
 };
 
-// A box in the coordinates of a light's map.
+// A box in shadow-map coordinates.
 struct Reach {
     vec3 low, high;
 };
 
-// Finds which steps of a packet's rays a sun lights, many at once where it can.
+// Finds which steps of a packet's rays a sun lights, by bisection over ranges of steps.
 struct LitSteps {
     const Packet& packet;
     const RaysInMap& rays;
-    Lit* lit;   // of each step
-    vec3 slack; // by which places between two borders round otherwise than the borders
+    Lit* lit;   // per step
+    vec3 slack; // bound on rounding errors of points between two boundaries
 
     LitSteps(const Packet& of, const RaysInMap& in, Lit* result) : packet(of), rays(in), lit(result) {
         const Floats farthest = packet.border(packet.steps);
@@ -163,7 +163,7 @@ struct LitSteps {
     }
 };
 
-// Which steps the suns light.
+// Finds which steps each sun lights.
 void find_lit(const Packet& packet) {
     const auto steps = static_cast<size_t>(packet.steps);
     packet.scratch.lit.resize(packet.lights() * steps);
@@ -175,8 +175,8 @@ void find_lit(const Packet& packet) {
     }
 }
 
-// What a source of 1 per metre in a step of fog adds to the eye, per metre of the step: transmittance up to it times
-// the mean inside; with a style, its own transmittance and fading.
+// Radiance at the eye per meter of a step, for a source of 1 per meter in it: transmittance up to the step times the
+// mean transmittance inside; with a style, its own transmittance and fade.
 HWY_INLINE Floats seen_share(const Packet& packet, const Floats& transmittance, const Floats& depth,
                              const Floats& depth_inside, const Floats& mean_inside, const Vec3s& position) {
     if (!packet.styled) return transmittance * mean_inside;

@@ -1,4 +1,4 @@
-// Settings of the march with shadow maps: rows, presets, and the ladder from quick to careful.
+// Settings of shadow-map: rows, presets, and the ladder from fastest to most accurate.
 #include "modes/shadow_map/settings.h"
 #include "modes/mode.h"
 #include "modes/settings_rows.h"

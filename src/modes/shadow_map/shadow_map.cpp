@@ -1,4 +1,4 @@
-// Ray march in a fixed number of steps with shadow maps: the technique of games, between exact entry and exit.
+// Ray marching in a fixed number of steps with shadow maps, as in games, between exact entry and exit points.
 #include "integrate/lights/field_light.h"
 #include "integrate/lights/fire_lamps.h"
 #include "integrate/lights/mesh_lamps.h"
@@ -18,7 +18,7 @@
 
 namespace tyndall {
 namespace {
-constexpr float detail_voxels = 4; // of the finest detail of a noise
+constexpr float detail_voxels = 4; // size of a noise's finest detail
 }
 
 float fog_detail(std::span<const Medium> media) {

@@ -1,4 +1,4 @@
-// Where steps lie: exactly between entry and exit of fog and light.
+// Step boundaries, exactly between entry and exit of the fog.
 #include "integrate/march_steps.h"
 #include "modes/shadow_map/kernel.h"
 #include "volume/medium.h"

@@ -1,4 +1,4 @@
-// How shadow volumes are off.
+// Limitations of shadow-volume.
 #pragma once
 #include "modes/limitation.h"
 

@@ -1,4 +1,4 @@
-// Settings of shadow volumes: rows, presets, and the ladder from quick to careful.
+// Settings of shadow-volume: rows, presets, and the ladder from fastest to most accurate.
 #include "modes/shadow_volume/settings.h"
 #include "modes/mode.h"
 #include "modes/settings_rows.h"

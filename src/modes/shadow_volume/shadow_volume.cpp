@@ -42,7 +42,7 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
                 frame->heterogeneous.push_back(medium.world_bounds);
         frame->snapshot.media = homogeneous_media(frame->snapshot.media);
     }
-    // What slices find is the same, more slowly.
+    // Slices give the same result, but more slowly.
     const bool room = frame->shells || has_room_for_views(frame->snapshot, [](const Light&) { return 1; });
     const auto by = [room](const Light&) { return room ? ShadowsBy::volumes : ShadowsBy::slices; };
     add_lights(view, without_froxels(settings.terms.light), settings.terms.light_resolution, by, *frame);

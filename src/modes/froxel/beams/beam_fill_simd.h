@@ -1,4 +1,4 @@
-// What froxels keep of the beams through them (see base/simd/simd.h for how such files are compiled).
+// Data that froxels store for beams (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_BEAMS_BEAM_FILL_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_BEAMS_BEAM_FILL_SIMD_H
 #undef TYNDALL_MODES_FROXEL_BEAMS_BEAM_FILL_SIMD_H
@@ -13,21 +13,21 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// The beams of a packet of tiles, from slice to slice.
+// The beams of a packet of tiles, reused from slice to slice.
 struct PacketBeams {
     std::vector<FroxelBeams::Reach> reaches; // [beam · 16 + lane]
-    std::vector<FroxelBeams::Reach> all;     // per beam, of any lane
-    // Of the rays, in the beams and lit there: [(sample · beams + beam) · slices + slice]
+    std::vector<FroxelBeams::Reach> all;     // per beam, union over lanes
+    // Lengths of the rays inside the beams, and of their lit parts: [(sample · beams + beam) · slices + slice]
     std::vector<LightInjection::Depths> inside, lit;
-    std::vector<std::array<float, 16>> sums; // per channel, over the samples of a slice
+    std::vector<std::array<float, 16>> sums; // per beam, then per medium: sums over the samples of a slice
 };
 
 bool has_beams(const Fill& fill) { return fill.pass.beams && !fill.pass.beams->lights.empty(); }
 
-// The rays that the beams are seen along: the same ones in each frame, as nothing averages them over frames.
+// The ray of a tile that a sample uses for beams: the same in each frame, as beams have no temporal history.
 size_t beam_ray(const Fill& fill, int sample) { return static_cast<size_t>(sample) % fill.tiles.rays(); }
 
-// Reaches of all beams, and their lit stretches on the rays of every sample.
+// Finds the reaches of all beams, and their lit segments on the rays of every sample.
 void prepare_beams(const Fill& fill, const Lanes& where, PacketBeams& beams) {
     const FroxelBeams& kept = *fill.pass.beams;
     const size_t count = kept.lights.size(), slices = static_cast<size_t>(fill.grid.slices());
@@ -58,7 +58,8 @@ void prepare_beams(const Fill& fill, const Lanes& where, PacketBeams& beams) {
     }
 }
 
-// Points outside a cone turned into it, at their distance from the apex: the light's fog is known in there only.
+// Rotates points outside a cone into it, at the same distance from the apex: the light's optical depths are known only
+// inside.
 Vec3s turned_inside(const Light& light, const Vec3s& point) {
     const float cosine = std::cos(0.999f * light.outer_cone), sine = std::sin(0.999f * light.outer_cone);
     const Vec3s offset = point - splat(light.position), axis = splat(light.direction);
@@ -72,8 +73,8 @@ Vec3s turned_inside(const Light& light, const Vec3s& point) {
     return inside + splat(light.position);
 }
 
-// Share of a beam that surfaces let through to the lanes: of the stretches that lie in it, or to a point in it where
-// the lanes lie beside it.
+// Fraction of a beam that surfaces let through to the lanes: the lit fraction of the segments inside the beam or, for
+// lanes beside it, the visibility of a point inside it.
 Floats seen_share(const Fill& fill, const PacketBeams& beams, size_t beam, const FroxelLanes& lanes, const Vec3s& point,
                   const Job& job) {
     const FroxelBeams& kept = *fill.pass.beams;
@@ -126,7 +127,7 @@ void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, c
     }
 }
 
-// The sums of a slice to its froxels. Those behind what a tile sees are as the last one that it does.
+// Stores the sums of a slice in its froxels. Those behind what a tile sees repeat its last visible one.
 void put_beams(const Fill& fill, const Lanes& where, const PacketBeams& beams, int slice) {
     FroxelBeams& kept = *fill.pass.beams;
     const size_t count = kept.lights.size();

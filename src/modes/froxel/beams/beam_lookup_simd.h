@@ -1,5 +1,5 @@
-// The light of a beam on sixteen camera rays: its strength from the rays themselves, what dims it from froxels (see
-// base/simd/simd.h for how such files are compiled).
+// Light of a beam along 16 camera rays: its strength is evaluated along the rays, its attenuation comes from froxels
+// (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H
 #undef TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H
@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Slices that a beam may reach on the rays, and on any of them.
+// Slices that a beam may reach, per ray and for any of them.
 struct RaysReach {
     Floats first, end;
     FroxelBeams::Reach all;
@@ -33,7 +33,7 @@ RaysReach reach_of(const FroxelBeams& beams, size_t beam, const Ints& own) {
     return {load(first), load(end), all};
 }
 
-// A value of the tiles around the rays, with their weights.
+// Interpolates a per-tile value between the tiles around the rays.
 template<class Value> HWY_INLINE Floats between_tiles(const Places& places, const Value& value_of) {
     Floats sum = 0.0f;
     for (int t = 0; t < places.count; ++t) {
@@ -49,14 +49,14 @@ template<class Value> HWY_INLINE Floats between_tiles(const Places& places, cons
     return sum;
 }
 
-// A slice of the froxels around the rays.
+// One slice, interpolated between the froxels around the rays.
 struct BeamSlice {
-    Floats before, across; // optical depth per metre of slant up to it, and in it
-    Floats extinction;     // per metre
-    Floats share;          // of the beam's light that arrives
+    Floats before, across; // optical depth for a slant of 1, up to the slice and in it
+    Floats extinction;     // 1/m
+    Floats share;          // fraction of the beam's light that arrives
 };
 
-// What froxels know for rays that pass the lamp far off, and the rays themselves close to it.
+// Blends from the froxels' value, for rays that pass the lamp far away, to the ray's own, for rays close to it.
 HWY_INLINE Floats nearer(const BeamWalk& walk, const Floats& of_froxels, const Floats& own) {
     return select(walk.close < 1.0f, of_froxels + (own - of_froxels) * walk.close, own);
 }
@@ -70,7 +70,7 @@ HWY_INLINE Floats mean_extinction(const BeamWalk& walk, const BeamSlice& here, s
            });
 }
 
-// Extinction of a medium at points of the rays: of grids, where they are close to the lamp.
+// Extinction of a medium at points of the rays; grids are sampled only for rays close to the lamp.
 HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, size_t medium, int slice,
                                 const Vec3s& point) {
     const Medium& of = walk.picture.scene->snapshot.media[medium];
@@ -82,7 +82,8 @@ HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, siz
     return nearer(walk, mean, exact);
 }
 
-// Share of a beam's light that grid fog lets through to points of the rays, where they are close to the lamp.
+// Fraction of a beam's light that grid fog and the style's fade let through to points of the rays, for rays close to
+// the lamp.
 HWY_INLINE Floats exact_share(const BeamWalk& walk, const Vec3s& point, const Mask16& wanted) {
     const FroxelScene& scene = *walk.picture.scene;
     const auto& columns = scene.columns[walk.picture.beams.lights[walk.beam]];
@@ -91,14 +92,15 @@ HWY_INLINE Floats exact_share(const BeamWalk& walk, const Vec3s& point, const Ma
            style_fade(scene.style, walk.picture.grid.camera, point);
 }
 
-// Mean of e^-x over a stretch by that in its middle: sinh(d/2) / (d/2) for the depth d of the stretch.
+// Mean of e^-x over a segment of optical depth d, relative to its value at the middle: sinh(d/2) / (d/2), as a series.
 HWY_INLINE Floats mean_over(const Floats& depth) {
     const Floats square = depth * depth;
     return fused(square, fused(square, 1.0f / 1920, 1.0f / 24), 1.0f);
 }
 
-// Light of a beam on a stretch of the rays within a slice, by two Gauss points in each of some equal angles seen from
-// the lamp: there 1/r² is constant. A beam of few slices is cut finer; a small angle has one point in its middle.
+// Light of a beam on a segment of the rays inside a slice: two Gauss points in each of several equal angles seen from
+// the lamp, in which dt/r² is constant. Their number is proportional to the segment's part of the beam's whole angle; a
+// small angle has a single point at its middle.
 Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice, const BeamSlice& here,
                    const Mask16& wanted) {
     constexpr float gauss = 0.2113248654f; // (1 - 1/√3) / 2
@@ -110,7 +112,7 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
     const bool exact = walk.picture.beams.exact_shadows[walk.beam] && any(close);
     const Mask16 single = (angles.angle < walk.whole * (0.25f / pieces)) & (angles.angle < 0.2f);
     const Floats cut = min(floor(angles.angle / walk.whole * pieces), pieces - 1) + 1.0f, share = 1.0f / cut;
-    // Fog dims the light on its way to the points as it does to the middle of the slice, but for what lies between.
+    // Grid fog attenuates light to each point as to the middle of the slice, corrected for the fog in between.
     const float dims = dimming(walk.picture.scene->depths[walk.picture.beams.lights[walk.beam]]);
     const FroxelBeams::LampFog& fog = walk.picture.beams.fog[walk.beam];
     Floats grids = 0.0f; // extinction of grid fog
@@ -150,7 +152,7 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice,
     return sum;
 }
 
-// The same between the light's kinks.
+// The same, split at the light's kinks and for narrow phase lobes.
 Vec3s light_between_kinks(const BeamWalk& walk, const Interval<Floats>& part, int slice, const BeamSlice& here,
                           const Mask16& wanted) {
     return between_kinks(walk, part, wanted, [&](const Interval<Floats>& one, const Mask16& some) HWY_ATTR {
@@ -160,8 +162,8 @@ Vec3s light_between_kinks(const BeamWalk& walk, const Interval<Floats>& part, in
     });
 }
 
-// Optical depths from the starts of the rays to the faces of the slices [face · 16 + ray], as far as they were asked
-// for: one look at the density in the middle of each slice.
+// Optical depths from the rays' starts to the slice faces [face · 16 + ray], computed on demand with one density sample
+// at the middle of each slice.
 struct RayDepths {
     std::vector<float> depths;
 };
@@ -181,7 +183,7 @@ Floats own_depth_to(const BeamWalk& walk, int face, RayDepths& known) {
     return load(&known.depths[16 * static_cast<size_t>(face)]);
 }
 
-// Optical depth per metre of slant up to a face of the slices.
+// Optical depth up to a slice face, for a slant of 1.
 HWY_INLINE Floats depth_to(const BeamWalk& walk, int face, RayDepths& known) {
     const Floats mean =
         between_tiles(walk.places, [&](size_t tile) { return walk.picture.sums.at(walk.picture.grid, tile, face)[3]; });
@@ -190,14 +192,14 @@ HWY_INLINE Floats depth_to(const BeamWalk& walk, int face, RayDepths& known) {
     return nearer(walk, mean, own);
 }
 
-// How close rays pass a lamp, as far as they are in its beam: so much of their light comes from there that the fog has
-// to be asked for where they are.
+// How close rays pass a lamp inside its beam, 0..1: close to it, so much light comes from there that fog is sampled
+// along the rays themselves.
 Floats closeness(const BeamWalk& walk, const Interval<Floats>& chord, const Mask16& met) {
     const Floats u = max(max(chord.low, -chord.high), 0.0f);
     return zero_unless(met, near_share(walk.around, sqrt(fused(u, u, walk.by_lamp.height2))));
 }
 
-// The froxels of a slice around the rays, from the depths to its faces.
+// Interpolates a slice between the froxels around the rays, given the depths at its faces.
 BeamSlice slice_around(const BeamWalk& walk, int slice, const Floats& before, const Floats& behind) {
     const FroxelPicture& picture = walk.picture;
     const FroxelGrid& grid = picture.grid;
@@ -210,7 +212,7 @@ BeamSlice slice_around(const BeamWalk& walk, int slice, const Floats& before, co
     return here;
 }
 
-// The stretches of the beam that surfaces leave lit; null where froxels know how much of it they do.
+// The lit segments of the beam; null if froxels store the lit fraction instead.
 const LitIntervals* find_lit_intervals(const BeamWalk& walk, const RayBatch& batch, const Interval<Floats>& chord,
                                        const Mask16& met) {
     const FroxelScene& scene = *walk.picture.scene;
@@ -224,7 +226,7 @@ const LitIntervals* find_lit_intervals(const BeamWalk& walk, const RayBatch& bat
     return &lit;
 }
 
-// Light of a beam on what is lit of a part of the rays within a slice.
+// Light of a beam on the lit segments of a part of the rays inside a slice.
 Vec3s lit_part(const BeamWalk& walk, const LitIntervals* lit, const Interval<Floats>& part, int slice,
                const BeamSlice& here, const Mask16& wanted) {
     if (!lit) return light_between_kinks(walk, part, slice, here, wanted);
@@ -243,7 +245,7 @@ Vec3s lit_part(const BeamWalk& walk, const LitIntervals* lit, const Interval<Flo
     return sum;
 }
 
-// Light of a beam on the rays.
+// Light of a beam along the rays.
 Vec3s beam_light(const FroxelPicture& picture, size_t beam, const BeamRays& rays, const RayBatch& batch,
                  const Places& places, const Floats& depth_before, RayDepths& depths) {
     Vec3s sum = splat(vec3(0));

@@ -1,5 +1,5 @@
-// Sixteen camera rays as a lamp sees them, and where its light reaches them (see
-// base/simd/simd.h for how such files are compiled).
+// 16 camera rays relative to a lamp, and the intervals that its light reaches (see base/simd/simd.h for how such files
+// are compiled).
 #if defined(TYNDALL_MODES_FROXEL_BEAMS_BEAM_RAYS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_BEAMS_BEAM_RAYS_SIMD_H
 #undef TYNDALL_MODES_FROXEL_BEAMS_BEAM_RAYS_SIMD_H
@@ -17,19 +17,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Rays as a lamp sees them. Lengths u along them count from where they pass it.
+// Rays relative to a lamp. Lengths u along them are measured from their closest point to the lamp.
 struct RaysByLamp {
-    Floats nearest;   // metres from the start of the ray to there
-    Floats height2;   // squared distance there
-    Floats along, by; // the spot's axis along the ray, and along the way from the lamp to the point next to it
-    Floats away;      // height, no less than where 1/r² is capped
+    Floats nearest;   // meters from the start of the ray to the closest point
+    Floats height2;   // squared distance of that point from the lamp
+    Floats along, by; // components of the spot's axis along the ray, and from the lamp to the closest point
+    Floats away;      // distance of that point, no less than where 1/r² is capped
 };
 
 HWY_INLINE RaysByLamp seen_from(const Light& light, const Vec3s& origin, const Vec3s& direction) {
     RaysByLamp rays;
     const Vec3s to_lamp = splat(light.position) - origin;
     rays.nearest = dot(to_lamp, direction);
-    // Rounding leaves it askew, which a narrow beam would show.
+    // Makes it perpendicular to the ray despite rounding, which would show in a narrow beam.
     const Vec3s askew = direction * rays.nearest - to_lamp;
     const Floats off = dot(askew, direction);
     const Vec3s nearest = askew - direction * off;
@@ -41,15 +41,15 @@ HWY_INLINE RaysByLamp seen_from(const Light& light, const Vec3s& origin, const V
     return rays;
 }
 
-// The stretch within a radius of the lamp.
+// The interval within a radius of the lamp.
 HWY_INLINE Interval<Floats> inside_ball(float radius, const RaysByLamp& rays) {
     const Floats half = sqrt(max(Floats(radius * radius) - rays.height2, 0.0f));
     return {-half, half};
 }
 
-// The stretch inside a spot's cone, or one around its axis. Seen from the lamp at the angle θ from the point next to
-// it, the ray is off the axis by the cosine by·cos θ + along·sin θ = C cos(θ - φ): the cone cuts out the angles around
-// φ with C cos(θ - φ) at least the cosine of its edge.
+// The interval inside a spot's cone, or another cone around its axis. At an angle θ from the closest point, seen from
+// the lamp, the ray's cosine to the axis is by·cos θ + along·sin θ = C cos(θ - φ): it is inside the cone at the angles
+// around φ where that is at least the cosine of the cone's edge.
 HWY_INLINE Interval<Floats> inside_cone(float half_angle, const RaysByLamp& rays) {
     constexpr float right = 0.5f * pi, far = 1e30f;
     const float edge = std::max(std::cos(half_angle), 1e-6f);
@@ -68,7 +68,7 @@ HWY_INLINE Interval<Floats> inside_cone(float half_angle, const RaysByLamp& rays
     return {select(ahead, length(from), far), select(ahead, length(to), -far)};
 }
 
-// What reaches a length along the rays, as arriving() of trace/lights/light_simd.h.
+// Factor on the light's intensity at u, without shadows, as arriving() of trace/lights/light_simd.h.
 HWY_INLINE Floats strength_at(const Light& light, const ConeFalloff& cone, const RaysByLamp& rays, const Floats& u,
                               const Floats& distance) {
     const float reach = capped_radius(light);
@@ -82,11 +82,11 @@ HWY_INLINE Floats strength_at(const Light& light, const ConeFalloff& cone, const
     return amount;
 }
 
-// Camera rays as beams need them.
+// Data of camera rays that beams need.
 struct BeamRays {
     Vec3s origin, direction;
-    Floats first, last; // metres along the rays between which they lie in froxels
-    Ints own;           // tiles they lie in
+    Floats first, last; // interval of the rays inside the froxels, meters
+    Ints own;           // tiles that contain them
 };
 
 HWY_INLINE BeamRays beam_rays(const FroxelPicture& picture, const RayBatch& batch, const Places& places) {
@@ -105,7 +105,7 @@ HWY_INLINE BeamRays beam_rays(const FroxelPicture& picture, const RayBatch& batc
     return rays;
 }
 
-// A beam on the rays.
+// Integration of one beam along the rays.
 struct BeamWalk {
     const FroxelPicture& picture;
     const Places& places;
@@ -113,15 +113,15 @@ struct BeamWalk {
     size_t beam;
     const Light& light;
     const ConeFalloff& cone;
-    NearLight near, around; // what the rays follow, and where they ask for the fog themselves
+    NearLight near, around; // the part integrated per ray, and the region where rays sample fog themselves
     RaysByLamp by_lamp;
-    Floats depth_before;   // optical, of what lies before the rays' starts
-    Floats whole;          // angle of all of the beam on each ray
-    Floats close;          // 1 for rays that pass the lamp within a few froxels, less further off, then 0
-    Interval<Floats> full; // within a spot's soft edge
-    int filter_level = 0;  // of a gobo: as blurred as the points are apart
+    Floats depth_before;   // optical depth in front of the rays' starts
+    Floats whole;          // total angle of the beam on each ray
+    Floats close;          // 1 for rays that pass the lamp within a few froxels, falling to 0 farther away
+    Interval<Floats> full; // full intensity, inside a spot's soft edge
+    int filter_level = 0;  // mip level that matches the spacing of the points
 
-    // What a light's profile and gobo leave of it at points of the rays.
+    // Scattered light times the light's profile and gobo at points of the rays.
     HWY_INLINE Vec3s filtered(const Vec3s& scattered, const Vec3s& point, const Floats& distance) const {
         const LightFilter& filter = *light.filter;
         const Vec3s from_light = (point - splat(light.position)) * (1.0f / max(distance, 1e-20f));
@@ -131,7 +131,7 @@ struct BeamWalk {
     }
 };
 
-// Adds up what `add` gives for the parts of a stretch before, within and behind another.
+// Sums add(part, mask) over the parts of an interval before, within and behind another.
 template<class Add>
 HWY_INLINE Vec3s cut_by(const Interval<Floats>& within, const Interval<Floats>& part, const Mask16& wanted,
                         const Add& add) {
@@ -149,8 +149,8 @@ HWY_INLINE Vec3s cut_by(const Interval<Floats>& within, const Interval<Floats>& 
     return sum;
 }
 
-// The parts of a stretch between the kinks of the light: where the rays enter and leave the full light of a spot, and
-// the core inside of which 1/r² is capped.
+// Sums add(part, mask) over the parts of an interval between the kinks of the light: where rays enter and leave the
+// full intensity of a spot, and the core inside which 1/r² is capped.
 template<class Add>
 HWY_INLINE Vec3s between_kinks(const BeamWalk& walk, const Interval<Floats>& part, const Mask16& wanted,
                                const Add& add) {
@@ -160,7 +160,7 @@ HWY_INLINE Vec3s between_kinks(const BeamWalk& walk, const Interval<Floats>& par
     });
 }
 
-// Calls add(part, wanted) for what lies between the cuts of narrow lobes, and sums it.
+// Sums add(part, mask) over the parts of an interval between the cuts for narrow phase lobes.
 template<class Add>
 HWY_INLINE Vec3s between_cuts(const BeamWalk& walk, const Interval<Floats>& part, const Mask16& wanted,
                               const Add& add) {
@@ -178,7 +178,7 @@ HWY_INLINE Vec3s between_cuts(const BeamWalk& walk, const Interval<Floats>& part
     return sum;
 }
 
-// Optical depth of fog of closed form, from points to the lamp.
+// Optical depth of closed-form fog from points to the lamp.
 HWY_INLINE Floats closed_depth_to_lamp(const BeamWalk& walk, const Vec3s& point, const Floats& distance) {
     Floats sum = 0.0f;
     const Vec3s towards = splat(walk.light.position) - point;
@@ -188,7 +188,7 @@ HWY_INLINE Floats closed_depth_to_lamp(const BeamWalk& walk, const Vec3s& point,
     return sum;
 }
 
-// Optical depth of such fog from where the rays start to lengths along them.
+// Optical depth of such fog from the rays' starts to u.
 HWY_INLINE Floats closed_depth_before(const BeamWalk& walk, const Floats& u) {
     Floats sum = 0.0f;
     const LightPaths paths{walk.rays.origin, walk.rays.direction, max(u + walk.by_lamp.nearest, 0.0f)};

@@ -7,8 +7,8 @@
 
 namespace tyndall {
 namespace {
-// The corners of a tetrahedron, askew to the axes that things are built along: seen from any side they spread as far as
-// the disc of the ball does, a quarter of its squared radius each way.
+// Corners of a tetrahedron, rotated away from the axes that geometry tends to follow. From any side, they have the
+// variance of the sphere's disk, a quarter of its squared radius along each axis.
 constexpr double askew[4][3] = {
     {0.3323, 0.0873, -0.7949}, {-0.6396, -0.5836, -0.0170}, {-0.3117, 0.7623, 0.2679}, {0.6190, -0.2660, 0.5440}};
 }
@@ -26,7 +26,7 @@ LampViews lamp_views(const Snapshot& snapshot, const Light& light, const View& v
 namespace {
 using PathPacket = std::vector<Interval<double>>[16];
 
-// Appends the stretches that one point of the lamp lights.
+// Appends the segments that one point of the lamp lights.
 void append_lit_from(const ShadowView& view, const RayBatch& batch, int tile, const Interval<double> (&ranges)[16],
                      PathPacket& stretches) {
     static thread_local std::vector<ShadowCrossing> crossings;
@@ -44,18 +44,18 @@ void append_lit_from(const ShadowView& view, const RayBatch& batch, int tile, co
     append_lit(dark, crossings, ranges, stretches);
 }
 
-// A stretch and how much of the lamp lights it.
+// A segment, and the fraction of the lamp that lights it.
 struct Shared {
     float low, high, share;
 };
 
-// The stretches that one point of the lamp lights, ray by ray.
+// The segments that one point of the lamp lights, per ray.
 struct LitByPoint {
     PathPacket lit;
 };
 
-// Splits a ray wherever one of the points begins or ceases to light it. Neighbouring points light much the same
-// stretches, so their ends come almost sorted, and an insertion sort is quick.
+// Splits a ray wherever one of the points starts or stops lighting it. Neighboring points light similar segments, so
+// their ends are almost sorted, and an insertion sort is fast.
 void find_shares(const std::vector<LitByPoint>& points, size_t ray, std::vector<Shared>& shared) {
     static thread_local std::vector<std::pair<float, int>> ends;
     ends.clear(), shared.clear();
@@ -83,14 +83,14 @@ void find_shares(const std::vector<LitByPoint>& points, size_t ray, std::vector<
     }
 }
 
-// Squared, of the way from the lamp.
+// Squared distance from the lamp.
 float distance2(const Ray& ray, vec3 lamp, float t) {
     const vec3 way = ray.at(t) - lamp;
     return glm::dot(way, way);
 }
 
-// Short stretches side by side become one that is wholly lit and as long as what is lit of them, around their middle,
-// or lengthen what they adjoin: along so little of a ray the lamp's light is even.
+// Merges adjacent short segments into one fully lit segment as long as their lit part, around their mean, or extends a
+// fully lit neighbor: over such a short part of a ray, the lamp's light is uniform.
 void join_short(const Ray& ray, vec3 lamp, std::vector<Shared>& shared) {
     constexpr float little = 0.05f; // of the distance to the lamp
     const auto is_short = [&](float low, float high) {

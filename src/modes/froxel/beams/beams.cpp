@@ -13,8 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// The slices of up to 16 tiles of a row whose froxels lie in a spot's cone, or near to another lamp, or within `margin`
-// tiles of that.
+// Slices of up to 16 tiles of a row whose froxels lie in a spot's cone or near another lamp, or within `margin` froxel
+// widths of that.
 void find_reaches(const FroxelGrid& grid, const Light& light, float radius, float margin, ivec2 first,
                   FroxelBeams::Reach (&reaches)[16]) {
     alignas(64) float x[16], inside[16];
@@ -27,7 +27,7 @@ void find_reaches(const FroxelGrid& grid, const Light& light, float radius, floa
     for (int k = 0; k < grid.slices(); ++k) {
         const float low = grid.faces[static_cast<size_t>(k)], high = grid.faces[static_cast<size_t>(k) + 1];
         const float width = froxel_width(grid, high);
-        // From the middle of the froxel's line; no point of it is further from there than half its length.
+        // Tested from the midpoint of the froxel's line: no point of the line is farther away than half its length.
         const Vec3s offset = fused(step, 0.5f * (low + high), start);
         const Floats near = fused(slant, 0.5f * (high - low), margin * width);
         const Floats squared = dot(offset, offset), along = dot(offset, splat(light.direction));
@@ -45,7 +45,7 @@ void find_reaches(const FroxelGrid& grid, const Light& light, float radius, floa
 }
 
 void reaches_kernel(const FroxelScene& scene, const FroxelGrid& grid, FroxelBeams& beams) {
-    // Rays find froxels up to a tile away, with wider look-ups two: across corners that is √2 times as far.
+    // Look-ups use froxels up to one tile away, wider ones two; diagonally, that is √2 times as far.
     const float margin = scene.settings.lookup == FroxelLookup::trilinear ? 1.5f : 3.0f;
     const size_t count = beams.lights.size();
     parallel_for(grid.size.y, [&](int64_t row) {
@@ -89,7 +89,7 @@ NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t in
 }
 
 NearLight near_to(const FroxelGrid& grid, const Light& light) {
-    constexpr float froxels = 14; // across
+    constexpr float froxels = 14; // froxel widths
     const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);
     return {z > 0 ? froxels * froxel_width(grid, z) : 0};
 }

@@ -1,6 +1,6 @@
-// Beams of spots, of lamps whose shadows rays find by themselves, and what is near to other lamps. Light there follows
-// from each ray of the picture itself: its distance from the lamp and the edge of the cone, which froxels would smear.
-// They keep what changes slowly: how much of the light gets there at all.
+// Beams: light of spots, of lamps with shadows found per ray, and of what is near other lamps. It is integrated along
+// each camera ray, which resolves the distance from the lamp and the edge of a cone that froxels would blur. Froxels
+// store what varies slowly: the fraction of the light that arrives.
 #pragma once
 #include "base/recycled.h"
 #include "integrate/lobe_cuts.h"
@@ -15,10 +15,10 @@
 namespace tyndall {
 struct FroxelScene;
 
-// The part of a light that look-ups follow ray by ray: all around the lamp, less and less from half a radius on, until
-// froxels have all of it. 0 = none, infinite = all.
+// The part of a light that look-ups integrate per ray: all of it near the lamp, and less from half the radius on;
+// froxels hold the rest. 0 = none, infinite = all.
 struct NearLight {
-    float radius = 0; // metres
+    float radius = 0; // meters
     float at(float distance) const {
         const float x = std::clamp(2 - 2 * distance / radius, 0.0f, 1.0f);
         return std::isinf(radius) ? 1 : radius > 0 ? x * x * (3 - 2 * x) : 0;
@@ -26,37 +26,38 @@ struct NearLight {
 };
 NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t light);
 
-// Of an IES profile or gobo rays see this many pieces across what they see of the light, with two points each.
+// A light with an IES profile or gobo is split into this many angles along a ray, with two points each.
 inline constexpr float filter_pieces = 48;
 inline float filter_point_angle(const Light& light) { return whole_angle(light) / (2 * filter_pieces); }
 
-// What is near to a lamp by the size of the froxels around it: from half of that on they show its 1/r², and the fog
-// that it lights, as they are. None of a lamp behind the camera.
+// The near part of a lamp by the size of the froxels around it: beyond half its radius, froxels resolve 1/r² and the
+// fog around the lamp. 0 for a lamp behind the camera.
 NearLight near_to(const FroxelGrid& grid, const Light& light);
 
-// Whether rays find the shadows of a light by themselves, exactly but for surfaces with alpha, or there are none.
+// Whether a light's shadows are found exactly along rays, except those of surfaces with alpha, or it has none.
 bool has_exact_shadows(const FroxelScene& scene, const Light& light);
 
 struct FroxelBeams {
-    // Slices of a tile that the light may reach in it or in the tiles around it.
+    // Slices of a tile that the light may reach, in the tile or its neighbors.
     struct Reach {
         int32_t first = 0, end = 0;
-        size_t place = 0; // of the first one's share
+        size_t place = 0; // index of the first slice's share
     };
-    // What grid fog at a lamp takes of its light within a few froxels, over which shares would even out how it begins.
+    // Attenuation by the grid fog within a few froxels of a lamp, in closed form: interpolated shares would blur its
+    // onset.
     struct LampFog {
-        float extinction = 0, reach = 0; // 1/m, of the depth that counts; metres
+        float extinction = 0, reach = 0; // 1/m, times dimming(); meters
     };
-    std::vector<size_t> lights;      // of the scene
+    std::vector<size_t> lights;      // indices in the scene
     std::vector<LampFog> fog;        // at each of them
-    std::vector<LightDepth> grids;   // of each, without fog of closed form: rays know by themselves how that dims it
-    std::vector<bool> exact_shadows; // whether rays find all of them, or there are none
-    std::vector<bool> by_rays_alone; // whether rays know all of it: fog of closed form and exact shadows
+    std::vector<LightDepth> grids;   // for each, grid fog only: rays evaluate closed-form fog themselves
+    std::vector<bool> exact_shadows; // for each, whether all its shadows are found along rays, or it has none
+    std::vector<bool> by_rays_alone; // for each, whether rays need no froxels: closed-form fog and exact shadows
     LobeCuts lobe;                   // of the scene's fog
     std::vector<Reach> reaches;      // [tile · lights + light]
-    RecycledFloats shares; // of the light that would arrive without surfaces, and through LampFog alone: what does
-    size_t media = 0;      // of the scene; 0 where there is only one, or all are closed
-    RecycledFloats media_shares; // in the extinction [(tile · media + medium) · slices + slice]
+    RecycledFloats shares;           // fraction of light that arrives, relative to LampFog alone and no surfaces
+    size_t media = 0;                // number of media; 0 if there is only one, or none is a grid
+    RecycledFloats media_shares;     // fraction of each in the extinction [(tile · media + medium) · slices + slice]
 
     const Reach& reach(size_t tile, size_t beam) const { return reaches[tile * lights.size() + beam]; }
     float share(size_t tile, size_t beam, int slice) const {
@@ -68,9 +69,9 @@ struct FroxelBeams {
     }
 };
 
-// How much of its optical depth the fog on a light's way counts for where it is asked for by place.
+// Factor on the optical depth between a light and fog, where it is evaluated per point: 0 for methods off and average.
 float dimming(const LightDepth& depth);
 
-// Finds what the beams of a scene reach, with room for their shares, which fill_froxels() fills in.
+// Finds the slices that beams reach and allocates their shares, which fill_froxels() fills in.
 FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid);
 }

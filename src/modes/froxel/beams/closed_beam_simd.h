@@ -1,5 +1,5 @@
-// The light of a beam in fog of closed form on sixteen camera rays: nothing of it is asked of froxels (see
-// base/simd/simd.h for how such files are compiled).
+// Light of a beam in closed-form fog along 16 camera rays, without look-ups in froxels (see base/simd/simd.h for how
+// such files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_BEAMS_CLOSED_BEAM_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_BEAMS_CLOSED_BEAM_SIMD_H
 #undef TYNDALL_MODES_FROXEL_BEAMS_CLOSED_BEAM_SIMD_H
@@ -14,9 +14,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Light on a stretch without kinks, by two Gauss points in each of some equal angles seen from the lamp: there 1/r² is
-// constant. A piece spans 0.3 radians, in cones 0.2, and two optical depths at most, of the way to the lamp and that to
-// the eye.
+// Light on a segment without kinks: two Gauss points in each of several equal angles seen from the lamp, in which dt/r²
+// is constant. An angle spans at most 0.3 radians, in cones 0.2, and two optical depths, of the paths to the lamp and
+// to the eye.
 Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch, const Mask16& wanted) {
     constexpr float gauss = 0.2113248654f; // (1 - 1/√3) / 2
     const float most = walk.light.filter ? 2 * filter_pieces : 24;
@@ -24,7 +24,7 @@ Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch,
     const size_t index = walk.picture.beams.lights[walk.beam];
     const EquiAngular16 angles(stretch, walk.by_lamp.away);
     const Floats across = closed_depth_before(walk, stretch.high) - closed_depth_before(walk, stretch.low);
-    // A soft edge may be narrow, and a lobe.
+    // A spot's soft edge may be narrow, and so may a phase lobe.
     const bool sharp = has_cone(walk.light) || walk.picture.beams.lobe.count > 0;
     float wide = sharp ? 0.2f : 0.3f;
     const float least = sharp ? 2 : 1;
@@ -55,7 +55,7 @@ Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch,
     return sum;
 }
 
-// The same, cut where the rays enter and leave the boxes of the media from `medium` on.
+// The same, split where rays enter and leave the boxes of the media from `medium` on.
 Vec3s closed_light_in_media(const BeamWalk& walk, const Interval<Floats>& stretch, const Mask16& wanted,
                             size_t medium = 0) {
     const std::vector<Medium>& media = walk.picture.scene->snapshot.media;
@@ -69,7 +69,7 @@ Vec3s closed_light_in_media(const BeamWalk& walk, const Interval<Floats>& stretc
     });
 }
 
-// Light of a beam on the lit stretches of a chord; on all of it where nothing casts shadows.
+// Light of a beam on the lit segments of a chord; on all of it if `lit` is null.
 Vec3s closed_beam_light(const BeamWalk& walk, const LitIntervals* lit, const Interval<Floats>& chord,
                         const Mask16& met) {
     const auto add = [&](const Interval<Floats>& stretch, const Mask16& some) HWY_ATTR {

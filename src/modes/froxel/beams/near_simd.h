@@ -18,7 +18,8 @@ HWY_INLINE Floats near_share(const NearLight& near, const Floats& distance) {
     return x * x * (3.0f - x * 2.0f);
 }
 
-// Optical depth of the fog at a lamp from there to a distance, where it thins out: ρ R (1 - e^(-d/R)).
+// Optical depth of LampFog from the lamp to a distance d, with an extinction ρ that falls off over its reach R: ρ R (1
+// - e^(-d/R)).
 HWY_INLINE Floats depth_at_lamp(const FroxelBeams::LampFog& fog, const Floats& distance) {
     if (fog.extinction == 0) return 0.0f;
     return (1.0f - exp(distance * (-1 / fog.reach))) * (fog.reach * fog.extinction);

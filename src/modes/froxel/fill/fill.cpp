@@ -14,17 +14,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// What a packet keeps from slice to slice.
+// State of a packet, reused from slice to slice.
 struct Packet {
     Lanes where;
     size_t index = 0;                        // among the grid's packets
     std::vector<FirstRays> first;            // per sample
     std::vector<LightInjection> exact;       // likewise
-    std::vector<std::array<float, 16>> here; // extinction of each medium, of the sample under way
+    std::vector<std::array<float, 16>> here; // extinction of each medium, for the current sample
     PacketBeams beams;
 };
 
-// Extinction of every medium where the lanes look, and their sum.
+// Extinction of every medium at the lanes' samples; returns the sum.
 Floats find_extinctions(const Fill& fill, Packet& packet, const FroxelLanes& lanes, int slice, int sample) {
     const std::vector<Medium>& media = fill.scene.snapshot.media;
     const size_t k = static_cast<size_t>(slice), slices = static_cast<size_t>(fill.grid.slices());
@@ -42,7 +42,7 @@ Floats find_extinctions(const Fill& fill, Packet& packet, const FroxelLanes& lan
     return sum;
 }
 
-// Puts red, green, blue and extinction of the lanes side by side into their froxels.
+// Stores red, green, blue and extinction of the lanes in their froxels.
 void put(const Fill& fill, const Lanes& where, int slice, const Vec3s& light, const Floats& extinction) {
     alignas(64) float rgbs[64];
     for (size_t i = 0; i < vectors_per_packet; ++i)
@@ -57,7 +57,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
     const auto* extinction = reinterpret_cast<const float(*)[16]>(packet.here.data());
     const bool sheet = holds_sheet(fill, slice);
 
-    // Extinctions and lights add up over the samples.
+    // Sums extinction and light over the samples.
     Vec3s light = splat(vec3(0));
     Floats total = 0.0f;
     for (std::array<float, 16>& sum : packet.beams.sums) sum.fill(0);
@@ -85,7 +85,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
     put(fill, packet.where, slice, light * inverse, total * (1 / static_cast<float>(fill.samples())));
 }
 
-// Whether any froxel of a tile is to be lit anew.
+// Whether any visible froxel of a tile has to be relit.
 bool is_wanted(const Fill& fill, const Lanes& lanes, int i) {
     if (!lanes.there[i] || !fill.pass.stale) return lanes.there[i];
     const size_t slices = static_cast<size_t>(fill.grid.slices());
@@ -94,7 +94,7 @@ bool is_wanted(const Fill& fill, const Lanes& lanes, int i) {
     return false;
 }
 
-// Exact light for every sample of the tiles that are wanted.
+// Finds exact light for every sample of the wanted tiles.
 void find_all_lit(const Fill& fill, const bool (&wanted)[16], Packet& packet) {
     const Lanes& lanes = packet.where;
     ivec2 at[16];
@@ -108,7 +108,7 @@ void find_all_lit(const Fill& fill, const bool (&wanted)[16], Packet& packet) {
     }
 }
 
-// Lanes `stride` tiles apart, from a corner; false when none is there.
+// Sets lanes `stride` tiles apart, from a corner on; returns false if none is in the grid.
 bool set_lanes(const Fill& fill, ivec2 corner, int stride, Lanes& lanes) {
     bool some = false;
     lanes.last = 0;
@@ -124,11 +124,11 @@ bool set_lanes(const Fill& fill, ivec2 corner, int stride, Lanes& lanes) {
     return some;
 }
 
-// Every second tile in both directions makes a packet when only a quarter of the froxels is new in a frame: then
-// packets are wholly new or wholly remembered.
+// With amortized filling, a packet consists of every second tile in both directions, so that all of it is either relit
+// or stale.
 int stride_of(const FroxelScene& scene) { return scene.settings.amortise ? 2 : 1; }
 
-// A block of tiles through all slices.
+// Fills a block of tiles through all slices.
 void fill_block(const Fill& fill, ivec2 corner, int stride, size_t block) {
     static thread_local Packet memory;
     Packet& packet = memory;

@@ -16,10 +16,10 @@ LightPoint light_point(const Light& light, const Ray& ray, uint32_t index, uint3
 }
 
 struct Moments {
-    double amount = 0, first = 0; // ∫ of the light along the ray, and of it times t
+    double amount = 0, first = 0; // ∫ of the light along the ray, and of light times t
 };
 
-// Light on a stretch without kinks: 2 Gauss points along it, or 4 in the angle seen from the light where that is near
+// Light on a segment without kinks: 2 Gauss points along it or, near the light, 4 in the angle seen from it
 // (equi-angular).
 Moments light_on(const LightAlong& along, const NearLight& near, double low, double high) {
     const double length = high - low;
@@ -43,7 +43,7 @@ Moments light_on(const LightAlong& along, const NearLight& near, double low, dou
     return sum;
 }
 
-// Adds a lit stretch to the slices it crosses, in lengths of the ray.
+// Adds a lit segment, in lengths of the ray, to the slices it crosses.
 void add_stretch(const FroxelGrid& grid, const LightAlong& along, const NearLight& near, Interval<double> stretch,
                  double per_metre, std::vector<Moments>& slices) {
     const auto end = [&](int k) { return grid.faces[static_cast<size_t>(k) + 1] / per_metre; };
@@ -63,10 +63,10 @@ void add_stretch(const FroxelGrid& grid, const LightAlong& along, const NearLigh
 // Lines through up to 16 tiles, up to the surface.
 struct Lines {
     std::array<Ray, 16> rays;
-    std::array<double, 16> per_metre; // of planar depth, per metre of the line
+    std::array<double, 16> per_metre; // planar depth per meter of the line
     std::array<LightPoint, 16> points;
     uint32_t active = 0; // bits
-    int bin = 0;         // of 8×8 tiles, that all lie in
+    int bin = 0;         // block of 8×8 tiles that contains them all
 };
 
 Lines find_lines(const FroxelGrid& grid, const FroxelTiles& tiles, const Light& light, uint32_t light_index,
@@ -80,7 +80,7 @@ Lines find_lines(const FroxelGrid& grid, const FroxelTiles& tiles, const Light& 
         const float surface = tiles.depth[grid.tile_index(at) * tiles.rays() + ray];
         line.t_max = static_cast<float>(std::min(grid.faces.back(), surface) / lines.per_metre[lane]);
         if (!(line.t_max * lines.per_metre[lane] > grid.faces.front())) continue;
-        // Other points for each 4×4 tiles: the same ones again would show as a pattern.
+        // Different points for each block of 4×4 tiles: repeated ones would show as a pattern.
         const auto block = static_cast<uint32_t>((at.y >> 2) * grid.size.x + (at.x >> 2));
         lines.points[lane] =
             indices ? light_point(light, line, indices[lane], hash(block, light_index)) : center_of(light);
@@ -91,8 +91,8 @@ Lines find_lines(const FroxelGrid& grid, const FroxelTiles& tiles, const Light& 
     return lines;
 }
 
-// The stretches from which the light is seen: by shadow volumes where all lines see the same point of it, else by
-// slices, else all.
+// The segments that see the light: by shadow volumes if all lines see the same point of it, else by slices; all of the
+// line without either.
 using PathPacket = std::vector<Interval<double>>[16];
 void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, PathPacket& lit) {
     for (std::vector<Interval<double>>& stretches : lit) stretches.clear();
@@ -126,7 +126,7 @@ void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, 
         if (lines.active >> lane & 1) std::swap(found[i++], lit[lane]);
 }
 
-// Adds a lit stretch of a sun, in planar depth, to the slices it crosses.
+// Adds a segment lit by a sun, in planar depth, to the slices it crosses.
 void add_depths(const FroxelGrid& grid, float low, float high, size_t lane, LightInjection::Depths* slices) {
     low = std::max(low, grid.faces.front());
     for (int k = slice_of(grid, low); k < grid.slices() && low < high; ++k) {
@@ -147,7 +147,7 @@ void add_sun(const FroxelScene& scene, const FroxelGrid& grid, size_t light, con
                        static_cast<float>(stretch.high * lines.per_metre[lane]), lane, slices);
 }
 
-// Adds the light on one line of a tile: sums over the line of amounts and of points times amounts.
+// Adds the light on one line of a tile to its slices: sums of amounts, and of points times amounts.
 void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const LightAlong& along, const NearLight& near,
               size_t lane, LightInjection::Arrivals* slices) {
     static thread_local std::vector<Moments> moments;
@@ -164,7 +164,7 @@ void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const L
     }
 }
 
-// What two ascending lists of stretches share.
+// Intersects two ascending lists of intervals.
 void keep_common(const std::vector<Interval<double>>& other, std::vector<Interval<double>>& stretches) {
     static thread_local std::vector<Interval<double>> common;
     common.clear();
@@ -177,7 +177,7 @@ void keep_common(const std::vector<Interval<double>>& other, std::vector<Interva
     std::swap(common, stretches);
 }
 
-// One line of each tile. What the light does not reach needs no shadows.
+// Adds one line of each tile. Shadows are found only where the light reaches.
 void add_lines(const FroxelScene& scene, const FroxelGrid& grid, size_t light, Lines lines,
                LightInjection::Arrivals* slices) {
     static thread_local LightAlong along[16];
@@ -199,7 +199,7 @@ void add_lines(const FroxelScene& scene, const FroxelGrid& grid, size_t light, L
     }
 }
 
-// Lengths of a tile's lines in each slice.
+// Adds the length of one line of a tile in each slice.
 void add_lengths(const FroxelGrid& grid, const Lines& lines, size_t lane, std::vector<double>& lengths) {
     const Ray& line = lines.rays[lane];
     const double per_metre = lines.per_metre[lane];
@@ -210,8 +210,8 @@ void add_lengths(const FroxelGrid& grid, const Lines& lines, size_t lane, std::v
     }
 }
 
-// A local light on the tiles' lines: of a spot all rays of each tile, as the edge of a narrow cone runs through
-// froxels; elsewhere one.
+// Adds a local light on the tiles' lines: on all rays of each tile for spots and filters, whose edges cross froxels;
+// otherwise on one.
 void add_local(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, size_t light,
                const ivec2* lanes, size_t ray, const uint32_t* indices, LightInjection::Arrivals* slices) {
     static thread_local std::vector<double> lengths[16];
@@ -224,7 +224,7 @@ void add_local(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTil
             if (lines.active >> lane & 1) add_lengths(grid, lines, lane, lengths[lane]);
         add_lines(scene, grid, light, lines, slices);
     }
-    // Sums of a tile's lines to what arrives on average.
+    // Converts sums over a tile's lines to means.
     for (size_t k = 0; k < lengths[0].size(); ++k)
         for (size_t lane = 0; lane < 16; ++lane) {
             float& amount = slices[k].amount[lane];
@@ -254,7 +254,7 @@ void find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const Fro
 }
 
 namespace {
-// The stretch of a line that is followed ray by ray.
+// The interval of a line in which the light is integrated per ray.
 Interval<double> near_reach(const Light& light, const NearLight& near, const Ray& line) {
     const dvec3 origin(line.origin), direction(line.direction);
     const Interval<double> reach = light_reach(light, origin, direction);

@@ -1,4 +1,4 @@
-// A light as sixteen froxels see it (see base/simd/simd.h for how such files are compiled).
+// A light as seen from 16 froxels (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_FILL_LIGHT_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_FILL_LIGHT_SIMD_H
 #undef TYNDALL_MODES_FROXEL_FILL_LIGHT_SIMD_H
@@ -12,21 +12,21 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// Sixteen froxels of one slice: where light is asked for, and the stretch of a camera ray that each stands for.
+// 16 froxels of one slice: where light is evaluated, and the segment of a camera ray that each represents.
 struct FroxelLanes {
-    Vec3s point, step;   // in front of every surface; along the line, per metre of planar depth
+    Vec3s point, step;   // in front of every surface; along the line, per meter of planar depth
     Floats z;            // planar depth of the point
-    Vec3s start, toward; // of the stretch; unit direction
-    Floats length;       // of the stretch, metres
-    Floats width2;       // squared radius of the disc as large as the froxel is across
+    Vec3s start, toward; // of the segment; unit direction
+    Floats length;       // of the segment, meters
+    Floats width2;       // squared radius of a disk of the froxel's cross-section
     Mask16 active;
 };
 
-// Which surfaces light has to pass.
+// Which surfaces can block the light.
 enum class Through { all, alpha };
 
-// Share of the light that passes the surfaces on the way to each lane's point, one shadow ray each. `places` pick
-// points of a soft light; null = its centre.
+// Fraction of the light that surfaces let through to each lane's point, by one shadow ray each. `places` pick points of
+// a soft light; null = its center.
 HWY_INLINE Floats visible_at_points(const Occluders& occluders, const Light& light, const FroxelLanes& lanes,
                                     const LightSamples& arrival, const Mask16& wanted, const Sample2* places,
                                     Through surfaces = Through::all) {

@@ -1,4 +1,4 @@
-// Froxels near a local light: points spread over them.
+// Light in froxels near a local light, sampled at points spread over them.
 #include "base/random.h"
 #include "integrate/equi_angular.h"
 #include "modes/froxel/fill/light_injection.h"
@@ -6,12 +6,12 @@
 
 namespace tyndall {
 namespace {
-// One line of a froxel as a light near it sees it.
+// One line of a froxel, relative to a light near it.
 struct NearLine {
     vec3 start, direction;
     float length;
     EquiAngular<float> angles;
-    float width2; // of the light's 1/r²: at least that of the part of the froxel the line stands for
+    float width2; // cap on 1/r²: at least the size of the froxel's part that the line represents
 };
 
 size_t near_lines(const FroxelGrid& grid, const FroxelTiles& tiles, ivec2 at, int slice, const Light& light,
@@ -59,7 +59,7 @@ FroxelLightSample near_arrival(const FroxelScene& scene, const FroxelGrid& grid,
     const size_t count = near_lines(grid, tiles, at, slice, light, lines);
     if (count == 0) return {};
 
-    // The points take the lines in turn and have equal shares of the angle that the light sees of a line.
+    // Points cycle through the lines, and divide each line into equal angles seen from the light.
     Occluders::ShadowRays shadow;
     alignas(64) float visible[16], weight[16];
     vec3 points[16];

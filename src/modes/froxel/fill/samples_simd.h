@@ -1,4 +1,4 @@
-// Where sixteen froxels are looked at, and the fog there (see base/simd/simd.h for how such files are compiled).
+// Sample points of 16 froxels, and the fog there (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_FILL_SAMPLES_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_FILL_SAMPLES_SIMD_H
 #undef TYNDALL_MODES_FROXEL_FILL_SAMPLES_SIMD_H
@@ -26,7 +26,8 @@ struct Fill {
     bool wants(size_t part) const {
         return !scene.is_beam(part) && (pass.only < 0 || static_cast<size_t>(pass.only) == part);
     }
-    // One look at a soft light is at its centre: other points would be noise that nothing averages.
+    // Whether soft lights are sampled at different points. A single sample uses the center: noise would not be
+    // averaged.
     bool spreads() const { return scene.settings.shadow_rays > 1 || pass.frame > 0; }
     int samples() const { return scene.settings.shadow_rays; }
 };
@@ -36,23 +37,24 @@ struct Lanes {
     ivec2 at[16];
     size_t tile[16];
     bool there[16];
-    alignas(64) float farthest[16]; // surface that any ray of the tile meets; before the first slice where not there
-    int last = 0;                   // slice that any lane sees something of, and 1
+    alignas(64) float farthest[16]; // farthest surface of the tile's rays; -infinity where not there
+    int last = 0;                   // one past the last slice that any lane sees
 };
 
-// The rays of a sample's first turn: pixels, and the surfaces they meet.
+// The rays that a sample tries first: pixels, and depths of the surfaces they hit.
 struct FirstRays {
     size_t ray;
     alignas(64) float x[16], y[16], depth[16];
 };
 
-// Where the lanes look: a ray of the tile that still sees this slice, and a depth.
+// Sample points of the lanes: on a ray of the tile that still sees this slice, and at a depth.
 struct FroxelSamples {
     alignas(64) float x[16], y[16], z[16], active[16], lit[16], low[16], high[16];
-    alignas(64) float first[16]; // 1 where the ray is the one whose turn it is
+    alignas(64) float first[16]; // 1 where that ray is first_ray()
 };
 
-// Numbers that spread over 4×4 neighbouring tiles, samples and frames; other ones for each slice and use.
+// Index in a sequence that spreads over 4×4 neighboring tiles, samples and frames; users scramble it by slice and
+// purpose.
 uint32_t spread_index(const Fill& fill, ivec2 at, int sample) {
     const auto cell = static_cast<uint32_t>((at.y & 3) * 4 + (at.x & 3));
     const auto samples = static_cast<uint32_t>(fill.samples());
@@ -62,7 +64,7 @@ uint32_t spread_index(const Fill& fill, ivec2 at, int sample) {
 // Radical inverse of base 2, from ½ on: ½, ¼, ¾, …
 float halton(int index) { return to_unit(reverse_bits(static_cast<uint32_t>(index) + 1)); }
 
-// The ray of every tile that a sample looks along, where it is not stopped.
+// The ray of every tile that a sample uses unless it is blocked.
 size_t first_ray(const Fill& fill, int sample) {
     return static_cast<size_t>(fill.pass.frame + sample) % fill.tiles.rays();
 }
@@ -78,14 +80,15 @@ FirstRays first_rays(const Fill& fill, const Lanes& lanes, int sample) {
     return first;
 }
 
-// Lanes whose light is wanted.
+// Marks the lanes that have to be relit.
 void set_lit(const Fill& fill, const Lanes& lanes, int slice, FroxelSamples& looks) {
     if (!fill.pass.stale) return store(Floats(1.0f), looks.lit);
     const size_t slices = static_cast<size_t>(fill.grid.slices()), k = static_cast<size_t>(slice);
     for (size_t i = 0; i < 16; ++i) looks.lit[i] = fill.pass.stale[lanes.tile[i] * slices + k] ? 0.0f : 1.0f;
 }
 
-// One lane: the first ray in turn that is not yet stopped at that depth; or the deepest, just before it is.
+// Sample of one lane: on the first ray, in turn, that is not blocked at its depth; else on the deepest, in front of its
+// surface.
 void look_along(const Fill& fill, const Lanes& lanes, int slice, int sample, size_t i, FroxelSamples& looks) {
     const FroxelTiles& tiles = fill.tiles;
     const size_t rays = tiles.rays(), k = static_cast<size_t>(slice), first = first_ray(fill, sample);
@@ -130,7 +133,7 @@ FroxelSamples look(const Fill& fill, const Lanes& lanes, const FirstRays& first,
     return looks;
 }
 
-// Points of the lanes' lines at planar depths.
+// Lines of the lanes: origin + z·step at planar depth z.
 struct Lines {
     Vec3s origin, step;
 };
@@ -165,7 +168,7 @@ bool holds_sheet(const Fill& fill, int slice) {
     });
 }
 
-// Lanes cut down to the fog on them: each medium's part counts by its extinction.
+// Shortens the lanes' segments to the fog on them, averaged over media by their extinction.
 FroxelLanes in_fog(const std::vector<Medium>& media, const FroxelLanes& lanes, const float (*extinction)[16]) {
     Floats low = 0.0f, high = 0.0f, total = 0.0f;
     for (size_t m = 0; m < media.size(); ++m) {
@@ -184,7 +187,7 @@ FroxelLanes in_fog(const std::vector<Medium>& media, const FroxelLanes& lanes, c
     return cut;
 }
 
-// Mean extinction along the stretches: exact for formulas, up to four samples for bricks.
+// Mean extinction along the segments: exact for closed forms, up to four samples for bricks.
 Floats mean_extinction(const Medium& medium, const FroxelLanes& lanes, float thickness) {
     if (medium.density.kind != DensityKind::bricks) {
         const LightPaths paths{lanes.start, lanes.toward, lanes.length};

@@ -1,4 +1,4 @@
-// What sixteen froxels send towards the eye (see base/simd/simd.h for how such files are compiled).
+// Light that 16 froxels send towards the eye (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_FILL_SCATTER_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_FILL_SCATTER_SIMD_H
 #undef TYNDALL_MODES_FROXEL_FILL_SCATTER_SIMD_H
@@ -17,24 +17,24 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// What arrives of a light in each lane, through the surfaces in its way, and where.
+// Light that arrives in each lane, with shadows, and the point where it is evaluated.
 struct LaneLightSamples {
     Vec3s point;
     Floats amount;
 };
 
-// A packet of froxels under way: 16 tiles, one slice, one sample.
+// The packet of froxels being filled: 16 tiles, one slice, one sample.
 struct Job {
     const Lanes& where;
     const FroxelSamples& looks;
     int slice, sample;
-    bool sheet;                    // the lanes are cut down to fog thinner than the slice
-    const LightInjection* exact;   // with slices
+    bool sheet;                    // segments are shortened to fog thinner than the slice
+    const LightInjection* exact;   // null unless FroxelVisibility::intervals
     const float (*extinction)[16]; // of each medium
-    Floats depth;                  // optical, of the stretches, as far as it dims the fog's own light
+    Floats depth;                  // optical depth of the segments, times style.view_depth
 };
 
-// Mean place, as a share of a stretch of this optical depth, of what is seen of even light on it.
+// Mean position of uniform light as seen through a segment of this optical depth, as a fraction of the segment.
 Floats mean_seen_place(const Floats& depth) {
     const Floats square = depth * depth;
     const Floats series = fused(depth, fused(square, fused(square, -1.0f / 30240, 1.0f / 720), -1.0f / 12), 0.5f);
@@ -42,9 +42,10 @@ Floats mean_seen_place(const Floats& depth) {
     return select(depth < 0.5f, series, 1.0f / large - 1.0f / (exp(min(large, 80.0f)) - 1.0f));
 }
 
-// A slice is seen through its own fog: light near its end counts less. What arrives is taken as spread evenly around
-// its mean place, and asked for where the eye sees it on average. That of a sun reaches to the nearer end of the slice;
-// that of a lamp, as 1/(h² + z²) at h from it, has the spread of its variance h L / atan(L/h) - h² (fitted within 3 %).
+// Attenuates light inside a slice by the slice's own fog: light near its far end counts less. Light is taken as uniform
+// around its mean position, and evaluated where the eye sees it on average. A sun's light extends to the nearer end of
+// the slice; a lamp's, which falls as 1/(h² + z²) at a distance h, has an extent with its variance h L / atan(L/h) - h²
+// (fitted within 3 %).
 void see_through_slice(const Light& light, const FroxelLanes& lanes, const Job& job, const Mask16& which,
                        LaneLightSamples& arrived) {
     constexpr float clear = 0.01f;
@@ -66,18 +67,19 @@ void see_through_slice(const Light& light, const FroxelLanes& lanes, const Job& 
     arrived.point = fused(lanes.toward, zero_unless(dim, moved), arrived.point);
 }
 
-// Froxels whose size counts beside their distance from a local light. An exact line answers for their depth, and for
-// their width where that is a single ray.
+// Froxels that are large relative to their distance from a local light. Exact lines account for their depth, and for
+// their width if a tile has a single ray.
 Mask16 near_lanes(const Fill& fill, size_t index, const FroxelLanes& lanes, const Floats& distance) {
     const Light& light = fill.scene.snapshot.lights[index];
-    constexpr float near = 4; // beyond, the centre stands for the froxel within 1 %
+    constexpr float near = 4; // farther away, the center represents the froxel within 1 %
     if (is_distant(light) || (fill.exact() && fill.tiles.rays() == 1)) return Floats(1.0f) < Floats(0.0f);
     const Floats wide2 = lanes.width2 * 4.0f, size2 = fill.exact() ? wide2 : max(lanes.length * lanes.length, wide2);
-    const Floats all_near = 0.5f * fill.scene.near(index).radius - sqrt(wide2 + lanes.length * lanes.length); // not its
+    // Closer to the light than `all_near`, rays integrate all of it.
+    const Floats all_near = 0.5f * fill.scene.near(index).radius - sqrt(wide2 + lanes.length * lanes.length);
     return lanes.active & (distance * distance < size2 * (near * near)) & (distance > all_near);
 }
 
-// Share of a light that passes the surfaces on the way to the lanes that shadow rays answer for.
+// Fraction of a light that surfaces let through to the lanes in `by_rays`, by shadow rays.
 Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, const Job& job, const LightSamples& plain,
                     const Mask16& by_rays) {
     const Light& light = fill.scene.snapshot.lights[index];
@@ -95,13 +97,13 @@ Floats traced_share(const Fill& fill, size_t index, const FroxelLanes& lanes, co
     return visible_at_points(*occluders, light, lanes, plain, by_rays, soft ? places : nullptr);
 }
 
-// A point of each lane's froxel, and one of a soft light.
+// A point in each lane's froxel, and one on a soft light.
 struct SpreadPoints {
     FroxelLanes froxels;
     Sample2 of_light[16];
 };
 
-// Number `k` of `count` points that are spread over the fog of the froxels; other ones in each sample and frame.
+// Point `k` of `count` points spread over the fog of the froxels; different in each sample and frame.
 SpreadPoints spread_points(const Fill& fill, size_t index, const FroxelLanes& fog, const Job& job, int k, int count) {
     const float froxel = static_cast<float>(fill.grid.tile);
     const int turn = fill.pass.frame * fill.samples() + job.sample;
@@ -123,14 +125,15 @@ SpreadPoints spread_points(const Fill& fill, size_t index, const FroxelLanes& fo
     return points;
 }
 
-// Share of a light that surfaces with alpha let through, where intervals answer for the opaque ones: the mean over
-// points spread through the froxels, as one would show each leaf as large as a froxel. Points in the shade of opaque
-// surfaces do not count; those that alpha alone makes dark may be in it, too, and count as much as others are not.
+// Fraction of a light that surfaces with alpha let through, where intervals account for opaque ones: the mean over
+// points spread over the froxels, as a single point would make each leaf as large as a froxel. Points shadowed by
+// opaque surfaces do not count. Those that are dark by alpha alone may be shadowed by opaque surfaces too, and are
+// weighted by the fraction of the other points that are not.
 Floats alpha_share(const Fill& fill, size_t index, const FroxelLanes& lanes, const Job& job, const Mask16& wanted) {
     const Light& light = fill.scene.snapshot.lights[index];
     const auto& occluders = shadow_casters(light, fill.scene.snapshot);
     if (!fill.exact() || !occluders || !occluders->has_alpha() || !any(wanted)) return 1.0f;
-    constexpr int points = 8; // of all samples of a froxel
+    constexpr int points = 8; // over all samples of a froxel
     const int count = std::max(points / fill.samples(), 1);
     const FroxelLanes fog = in_fog(fill.scene.snapshot.media, lanes, job.extinction);
     Floats passed = 0.0f, all = 0.0f, open = 0.0f, shaded = 0.0f;
@@ -151,7 +154,7 @@ Floats alpha_share(const Fill& fill, size_t index, const FroxelLanes& lanes, con
     return select(open > 0.0f, passed / max(open + dark * lit, 1.0f), all * (1.0f / total));
 }
 
-// What arrives where a froxel is large beside its distance from the light.
+// Replaces the light in froxels that are large relative to their distance from the light.
 void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near, LaneLightSamples& arrived) {
     alignas(64) float is_near[16], amount[16], point[3][16];
     store(select(near, 1.0f, 0.0f), is_near), store(arrived.amount, amount);
@@ -166,7 +169,7 @@ void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near
     arrived = {{load(point[0]), load(point[1]), load(point[2])}, load(amount)};
 }
 
-// Light is asked for in the middle of a sheet where it arrives beside it, or the sheet fills less than half the slice.
+// Evaluates light in the middle of a sheet if its point is outside, or if the sheet fills less than half the slice.
 void hold_in_fog(const FroxelLanes& lanes, const FroxelSamples& looks, const Mask16& which, LaneLightSamples& arrived) {
     const Floats place = dot(arrived.point - lanes.start, lanes.toward);
     const Floats slice = (load(looks.high) - load(looks.low)) * sqrt(dot(lanes.step, lanes.step));
@@ -181,7 +184,7 @@ LaneLightSamples arrivals(const Fill& fill, size_t index, const FroxelLanes& lan
     plain.amount = plain.amount * (1.0f - near_share(fill.scene.near(index), plain.distance));
     LaneLightSamples arrived{lanes.point, zero_unless(lit, plain.amount)};
     const Mask16 near = lit & near_lanes(fill, index, lanes, plain.distance);
-    Mask16 by_rays = arrived.amount > 0.0f, along = near; // along: what arrives on the whole stretch is known
+    Mask16 by_rays = arrived.amount > 0.0f, along = near; // along: light is known over the whole segment
     by_rays = by_rays & !near;
     if (job.exact) {
         const Mask16 sliced = lit & !near & (load(job.looks.first) > 0.0f);
@@ -217,7 +220,7 @@ LaneLightSamples arrivals(const Fill& fill, size_t index, const FroxelLanes& lan
     return arrived;
 }
 
-// Light of one kind scattered towards the eye, per metre.
+// One light's light scattered towards the eye, per meter.
 Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
     const LaneLightSamples arrived = arrivals(fill, index, lanes, lit, job);
@@ -237,7 +240,7 @@ Vec3s scattered_from(const Fill& fill, size_t index, const FroxelLanes& lanes, c
     return scattered_light(light, fill.scene.depths[index], arrived.point, arrived.amount, towards);
 }
 
-// Light of no single one, as far as it is wanted.
+// Ambient, emitted and multiply scattered light, as far as the pass wants it.
 Vec3s other_light(const Fill& fill, const FroxelLanes& lanes, const float (*extinction)[16]) {
     const Snapshot& snapshot = fill.scene.snapshot;
     const FluenceGrid* fluence = fill.scene.fluence.get();

@@ -1,4 +1,4 @@
-// Remembered light held to what this frame shows around it, and mixed with it: four froxels of a tile at a time.
+// Clamps the history to each froxel's neighborhood in this frame and blends the two: four froxels of a tile at a time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "modes/froxel/history/blend.cpp"
 #include <hwy/foreach_target.h>
@@ -16,10 +16,10 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 constexpr ivec2 block_size{16, 8}; // tiles
-constexpr float max_blur = 0.1f;   // froxels²: what moves is seen a third of a froxel wider
+constexpr float max_blur = 0.1f;   // froxels²: moving detail is blurred by a third of a froxel
 
-// Least and most among the froxels of a tile and their neighbours in depth; least > most where there are none. Of light
-// only new froxels count that hold fog. One froxel more at either end.
+// Minimum and maximum over each froxel of a tile and its neighbors in depth; low > high where there are none. For
+// light, only froxels filled in this frame that contain fog count. Padded by one froxel at either end.
 struct Bounds {
     RecycledFloats low, high;
     size_t stride = 0; // of a tile
@@ -35,25 +35,26 @@ struct Blend {
     const FroxelTiles& tiles;
     const FroxelLight& now;
     const BlendPass& pass;
-    FroxelLight& light; // what is remembered, and then the blend
+    FroxelLight& light; // the history, then the blend
     FroxelSums& sums;
 
     const uint8_t* stale_at(size_t tile, size_t first) const {
         return pass.stale ? pass.stale + tile * static_cast<size_t>(grid.slices()) + first / 4 : nullptr;
     }
-    // Whether all that is seen of a tile is what it was.
+    // Whether all visible froxels of a tile are stale, extinction included.
     bool stands(size_t tile) const {
         return pass.statics && pass.stale && !std::memchr(stale_at(tile, 0), 0, seen(tile) / 4);
     }
-    // Of what is remembered. A history of weight w that is blurred by v in every frame is blurred by v w/(1 - w).
+    // Weight of the history. A history of weight w that every frame blurs by a variance v has a variance of v w/(1 -
+    // w).
     float weight_of(size_t tile) const {
         const float blur = pass.blur.empty() ? 0 : pass.blur[tile];
         return std::min(pass.weight, max_blur / (max_blur + blur));
     }
-    // Values of the froxels that a tile sees.
+    // Number of values of a tile's visible froxels.
     size_t seen(size_t tile) const { return 4 * size_t{slices[tile]}; }
 
-    std::vector<uint32_t> slices{}; // seen, of each tile
+    std::vector<uint32_t> slices{}; // visible, per tile
 };
 
 void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
@@ -86,13 +87,13 @@ void find_bounds(const Blend& blend, size_t tile, float* low, float* high) {
     }
 }
 
-// Bounds of tiles one above the other, as far as they go.
+// Bounds of a tile, or of tiles in a column, and the number of values that are set.
 struct Column {
     const float *low = nullptr, *high = nullptr;
     size_t reach = 0; // values
 };
 
-// Up to three rows as one. Rows of tiles that stand show nothing new.
+// Merges the bounds of up to three rows.
 struct Joined {
     RecycledFloats low, high;
 
@@ -113,7 +114,7 @@ struct Joined {
     }
 };
 
-// Zeros where there is no fog or light is not finite.
+// Zeroes froxels without fog or with light that is not finite.
 void forget_unknown(float* light, size_t count) {
     for (size_t i = 0; i < count; i += 16) {
         const size_t here = std::min<size_t>(16, count - i);
@@ -137,7 +138,7 @@ void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile
             if (i < column.reach) low = min(low, load(column.low + i)), high = max(high, load(column.high + i));
         const Floats was = load_some(light + i, here), is = load_some(now + i, here);
         Floats kept = select(low <= high, max(low, min(was, high)), was);
-        if (blend.pass.statics) kept = select(is_extinction, was, kept); // nothing to be held to
+        if (blend.pass.statics) kept = select(is_extinction, was, kept); // no new extinction to clamp to
         Floats mixed = is + (kept - is) * weight;
         if (blend.pass.stale) {
             const Mask16 stale = stale_lanes(blend.stale_at(tile, i), here);
@@ -154,7 +155,7 @@ void blend_tile(const Blend& blend, std::span<const Column> columns, size_t tile
 void blend_block(const Blend& blend, ivec2 corner) {
     static thread_local Bounds bounds;
     static thread_local std::array<Joined, block_size.x + 2> joined;
-    static thread_local std::vector<Column> rows; // of all tiles
+    static thread_local std::vector<Column> rows; // per tile
     const ivec2 size = blend.grid.size, from = glm::max(corner - 1, 0), to = glm::min(corner + block_size + 1, size);
     const int width = to.x - from.x;
     const size_t tiles = static_cast<size_t>(width) * static_cast<size_t>(to.y - from.y);
@@ -166,7 +167,7 @@ void blend_block(const Blend& blend, ivec2 corner) {
             const size_t tile = blend.grid.tile_index({x, y}), at = place(x, y) * bounds.stride;
             if (blend.stands(tile)) continue;
             find_bounds(blend, tile, &bounds.low[at], &bounds.high[at]);
-            // One slice behind what a tile sees is bounded by it too.
+            // A tile also bounds the slice behind its last visible one.
             rows[place(x, y)] = {&bounds.low[at], &bounds.high[at], blend.seen(tile) + 4};
         }
     const ivec2 end = glm::min(corner + block_size, size);

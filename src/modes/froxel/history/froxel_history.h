@@ -1,4 +1,4 @@
-// The light of froxels as it was in the last frame, found again from this frame's.
+// Temporal history of froxel light: the last frame's froxels, resampled at this frame's and blended with them.
 #pragma once
 #include "modes/froxel/lookup/integrate.h"
 #include "modes/froxel/statics.h"
@@ -15,35 +15,37 @@ struct FroxelHistory {
     FroxelStatics statics;
 };
 
-// Frees light from what is not known.
+// Zeroes froxels that are hidden, empty or not finite. memory_of() makes a history of the result.
 void clean(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& light);
 FroxelHistory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light,
                         FroxelStatics statics = {});
 
-// The light and extinction remembered at the centre of each froxel of a frame; zeros where the last one did not see it.
+// The history's light and extinction at the center of each of this frame's froxels; zeros where the last frame did not
+// see it.
 struct Reprojection {
     FroxelLight light;
-    // Of each tile, froxels²: how much wider finding it between remembered froxels made what it shows, summed over the
-    // three directions, mean of its froxels. Empty where every froxel is where one was.
+    // Per tile: variance that interpolation between froxels adds, froxels², summed over the three axes, mean of its
+    // froxels. Empty if froxels coincide with those of the last frame.
     std::vector<float> blur;
 };
 Reprojection reproject(const FroxelHistory& memory, const FroxelGrid& grid, const FroxelTiles& tiles);
 
-// 1 for each froxel that need not be lit anew in this frame: all remembered ones but a quarter, another one each frame,
-// and but those near a local light, whose peak their neighbours do not show. In `still` fog also those without fog.
+// 1 for each froxel that need not be relit in this frame: all with a history, except a quarter that alternates from
+// frame to frame, and those near a local light, whose peak their neighbors do not show. With `statics` (static fog),
+// froxels without fog are stale too.
 std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& remembered, std::span<const Light> lights,
                                    int frame, bool statics = false);
 
 struct BlendPass {
-    float weight = 0;               // of what is remembered, where it is not blurred
-    float view_depth = 1;           // of the sums
-    const uint8_t* stale = nullptr; // per froxel, 1 = it is what it was
-    bool statics = false;           // its extinction too; else that is new everywhere
-    std::span<const float> blur{};  // per tile, as Reprojection
+    float weight = 0;               // of the history, where it is not blurred
+    float view_depth = 1;           // factor on optical depths in the sums
+    const uint8_t* stale = nullptr; // per froxel, 1 = not relit: keeps its history
+    bool statics = false;           // stale froxels keep their extinction too; else all extinction is new
+    std::span<const float> blur{};  // per tile, as in Reprojection
 };
 
-// Blends what `light` remembers, after clamping it to what the froxels around show in this frame, with this frame's
-// light and extinction. `light` is then what the next frame is to remember.
+// Clamps the history in `light` to each froxel's neighborhood in this frame, blends it with this frame's light and
+// extinction, and returns the integrated sums. `light` is then the history of the next frame.
 FroxelSums blend_history(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& now,
                          const BlendPass& pass, FroxelLight& light);
 }

@@ -1,5 +1,5 @@
-// Four froxels side by side: light and extinction of each in four lanes (see base/simd/simd.h for how such files are
-// compiled).
+// Four froxels side by side: red, green, blue and extinction of each in four lanes (see base/simd/simd.h for how such
+// files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_HISTORY_QUADS_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_HISTORY_QUADS_SIMD_H
 #undef TYNDALL_MODES_FROXEL_HISTORY_QUADS_SIMD_H
@@ -14,7 +14,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// The extinction of each froxel in all of its four lanes.
+// Broadcasts each froxel's extinction to its four lanes.
 HWY_INLINE Floats extinctions(const Floats& light) {
 #if HWY_TARGET == HWY_SCALAR
     alignas(64) float values[16];
@@ -53,7 +53,7 @@ HWY_INLINE Mask16 extinction_lanes() {
     return load(is) > 0.0f;
 }
 
-// Lanes of froxels that keep what they were: mostly all of a tile or none.
+// Lanes of stale froxels: usually all of a tile or none.
 HWY_INLINE Mask16 stale_lanes(const uint8_t* stale, size_t count) {
     uint32_t four = 0;
     if (stale && count >= 16) std::memcpy(&four, stale, 4);
@@ -64,7 +64,7 @@ HWY_INLINE Mask16 stale_lanes(const uint8_t* stale, size_t count) {
     return load(is) > 0.0f;
 }
 
-// How many of `count` values the lanes of part i hold.
+// How many of `count` values are in part i of a packet.
 HWY_INLINE size_t lanes_of(size_t count, size_t i) {
     return std::min(count - std::min(count, i * lane_step), lane_step);
 }

@@ -1,4 +1,4 @@
-// Froxels of the last frame at the places of this frame's: sixteen slices of a tile at a time.
+// Resamples the last frame's froxels at this frame's: 16 slices of a tile at a time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "modes/froxel/history/reproject.cpp"
 #include <hwy/foreach_target.h>
@@ -14,8 +14,8 @@ namespace {
 using FroxelTag = hn::CappedTag<float, 4>;
 constexpr size_t froxel_lanes = hn::MaxLanes(FroxelTag()), froxel_parts = 4 / froxel_lanes;
 
-// Where the centres of sixteen froxels lie among the remembered ones: cells of tiles, slices before and behind, and how
-// far between them. Not `known`: outside.
+// Positions of 16 froxel centers in the last frame's grid: cells of tiles, slices in front and behind, and
+// interpolation weights. `known` is 0 outside.
 struct Recalled {
     alignas(64) int32_t tile[16], near[16], step[16];
     alignas(64) float x[16], y[16], depth[16], known[16];
@@ -26,10 +26,10 @@ struct Recall {
     const FroxelGrid& grid;
     const FroxelTiles& tiles;
     Reprojection& result;
-    std::vector<float> centers; // planar depths of the remembered slices
+    std::vector<float> centers; // planar depths of the centers of the last frame's slices
 };
 
-// Pixels of points in the remembered picture (as project()).
+// Pixels of points in the last frame's image (as project()).
 HWY_INLINE Vec3s projected(const FroxelGrid& grid, const Vec3s& point) {
     const Camera& camera = grid.camera;
     const Vec3s offset = point - splat(camera.position);
@@ -48,7 +48,7 @@ void find(const Recall& reproject, const Vec3s& points, Recalled& found) {
     const float per_tile = 1 / static_cast<float>(grid.tile);
     const Floats x = fused(place.x, per_tile, 0.5f), y = fused(place.y, per_tile, 0.5f);
     const float right = static_cast<float>(grid.size.x - 1), bottom = static_cast<float>(grid.size.y - 1);
-    constexpr float slack = 1e-3f; // of a tile: the outermost centres belong to the picture
+    constexpr float slack = 1e-3f; // of a tile: includes the outermost tile centers
     const Mask16 inside = (x >= -slack) & (y >= -slack) & (x <= right + slack) & (y <= bottom + slack) &
                           (place.z >= grid.faces.front()) & (place.z <= grid.faces.back()) & (place.z > 0.0f);
     const Floats held_x = max(min(zero_unless(inside, x), right), 0.0f);
@@ -56,7 +56,7 @@ void find(const Recall& reproject, const Vec3s& points, Recalled& found) {
     const Ints column = min(truncate(held_x), Ints(grid.size.x - 2)),
                row = min(truncate(held_y), Ints(grid.size.y - 2));
 
-    // Between the centres of two slices.
+    // Interpolates between the centers of two slices.
     const Floats z = select(inside, place.z, grid.faces.front());
     const Ints slice = slices_of(grid, z);
     const Mask16 before = z < gather(reproject.centers.data(), slice);
@@ -71,9 +71,9 @@ void find(const Recall& reproject, const Vec3s& points, Recalled& found) {
     store(select(inside, 1.0f, 0.0f), found.known);
 }
 
-// Trilinear mean over what is known of the neighbours; zeros where that is too little.
+// Trilinear mean of the known neighbors; zeros where too few are known.
 HWY_INLINE void mix(const Recall& reproject, const Recalled& found, size_t lane, float* result) {
-    constexpr float least = 0.3f; // share of the neighbours that must be known
+    constexpr float least = 0.3f; // minimum weight of known neighbors
     const FroxelTag tag;
     const FroxelGrid& grid = reproject.memory.grid;
     const size_t tile = static_cast<size_t>(found.tile[lane]), row = static_cast<size_t>(grid.size.x);
@@ -119,7 +119,7 @@ void recall_tile(const Recall& reproject, ivec2 at) {
         for (size_t i = 0; i < std::min<size_t>(16, seen - first); ++i)
             if (found.known[i] > 0) {
                 mix(reproject, found, i, result + 4 * (first + i));
-                // A mean of two neighbours, weighted by how near they are, has this variance.
+                // Variance of linear interpolation between two neighbors.
                 for (const float share : {found.x[i], found.y[i], found.depth[i]}) blur += share * (1 - share);
                 ++known;
             } else

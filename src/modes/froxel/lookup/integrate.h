@@ -1,10 +1,10 @@
-// Froxels added up from the eye outwards.
+// Integration of froxels, front to back.
 #pragma once
 #include "modes/froxel/fill/fill.h"
 
 namespace tyndall {
-// Per tile and face of the slices, front to back [tile · faces + face]: light that reaches the eye from before the face
-// (red, green, blue), and the optical depth up to it per metre of slant: times |step of a line| it is the line's own.
+// Per tile and slice face, front to back [tile · faces + face]: light that reaches the eye from in front of the face
+// (red, green, blue), and optical depth up to it for a slant of 1: multiply by |step| of a line for the line's own.
 struct FroxelSums {
     RecycledFloats values;
     const float* at(const FroxelGrid& grid, size_t tile, int face) const {
@@ -12,8 +12,8 @@ struct FroxelSums {
     }
 };
 
-// Within a slice light and extinction are constant and the integral is exact (Hillaire 2015): L += T J (1-e^-D). Beyond
-// what a tile sees, the last froxel it does see goes on.
+// Light and extinction are constant in a slice, and the integral is exact (Hillaire 2015): L += T J (1-e^-D). Behind
+// what a tile sees, its last visible froxel is repeated.
 FroxelSums integrate_froxels(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light,
                              float view_depth);
 }

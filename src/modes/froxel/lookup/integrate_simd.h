@@ -1,4 +1,4 @@
-// One tile of froxels added up (see base/simd/simd.h for how such files are compiled).
+// Integration of one tile of froxels (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_LOOKUP_INTEGRATE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_LOOKUP_INTEGRATE_SIMD_H
 #undef TYNDALL_MODES_FROXEL_LOOKUP_INTEGRATE_SIMD_H
@@ -11,7 +11,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-// Lanes moved up by n, zeros before them.
+// Lanes shifted up by n, zeros in front.
 template<int n> HWY_INLINE Floats moved_up(const Floats& a) {
 #if HWY_ARCH_X86 && HWY_MAX_BYTES == 64
     const __m512i bits = _mm512_castps_si512(a.part[0].raw);
@@ -25,7 +25,7 @@ template<int n> HWY_INLINE Floats moved_up(const Floats& a) {
 #endif
 }
 
-// Of each lane and all before it. The order of the additions is the same with every instruction set.
+// Inclusive prefix sums. The order of the additions is the same with every instruction set.
 HWY_INLINE Floats running_sums(Floats a) {
     a = a + moved_up<1>(a), a = a + moved_up<2>(a), a = a + moved_up<4>(a);
     return a + moved_up<8>(a);
@@ -33,7 +33,7 @@ HWY_INLINE Floats running_sums(Floats a) {
 
 HWY_INLINE float last_lane(const Floats& a) { return hn::ExtractLane(a.part[vectors_per_packet - 1], lane_step - 1); }
 
-// Sixteen froxels or sums, one per lane: red, green, blue, and extinction or optical depth.
+// 16 froxels or sums, one per lane: red, green, blue, and extinction or optical depth.
 struct Quads {
     Floats channel[4];
 };
@@ -50,7 +50,7 @@ HWY_INLINE void store_quads(const Quads& q, float* to) {
                               FloatTag(), to + 4 * i * lane_step);
 }
 
-// Up to sixteen slices of a tile from `first` on. Behind what the tile sees the last froxel it does see goes on.
+// Up to 16 slices of a tile from `first` on. Behind what the tile sees, its last visible froxel is repeated.
 HWY_INLINE Quads froxels_from(const float* tile, size_t first, size_t seen) {
     if (first + 16 <= seen) return load_quads(tile + 4 * first);
     alignas(64) float padded[64];
@@ -67,14 +67,14 @@ HWY_INLINE Floats thicknesses(const FroxelGrid& grid, size_t first, size_t count
     return load(padded);
 }
 
-// One tile, sixteen slices at a time: optical depths first, then light by the weights T (1-e^-D).
+// Integrates one tile, 16 slices at a time: optical depths first, then light with weights T (1-e^-D).
 HWY_INLINE void integrate_tile(const FroxelGrid& grid, const FroxelTiles& tiles, const FroxelLight& light,
                                float view_depth, size_t tile, float* sums) {
     const size_t slices = static_cast<size_t>(grid.slices()), seen = seen_slices(grid, tiles, tile);
     const float slant = grid.slants[tile];
     const float* froxels = light.at(grid, tile, 0);
     std::fill_n(sums, 4, 0.0f);
-    double depth = 0; // rounds less than the differences that look-ups take of it
+    double depth = 0; // double, as look-ups take differences of it
     float sum[3] = {};
     for (size_t first = 0; first < slices; first += 16) {
         const size_t count = std::min<size_t>(16, slices - first);

@@ -14,14 +14,14 @@ using TapTag = hn::CappedTag<float, 8>;
 constexpr size_t tap_lanes = hn::MaxLanes(TapTag());
 constexpr size_t tap_parts = 8 / tap_lanes;
 
-// Sums at the faces before and behind depths of 16 rays: red, green, blue and optical depth of each.
+// Sums at the slice faces in front of and behind the depths of 16 rays: red, green, blue and optical depth of each.
 struct FaceSums {
     Floats near[4], far[4];
-    Floats share;  // of the slice before the depth
+    Floats share;  // fraction of the slice in front of the depth
     Floats behind; // planar depth of the face behind
 };
 
-// Rays between the same tiles that end in the slices least..most: each slice for all of them at once.
+// For rays between the same tiles that end in slices least..most: interpolates each slice for all rays at once.
 void mix_slices(const Places& places, const float* const* columns, const Ints& slice, int least, int most,
                 FaceSums& result) {
     const Floats place = to_floats(slice);
@@ -40,7 +40,7 @@ void mix_slices(const Places& places, const float* const* columns, const Ints& s
     }
 }
 
-// Ray by ray. Both faces of a slice lie side by side in memory: eight floats per tile.
+// Interpolates ray by ray. Both faces of a slice are adjacent in memory: eight floats per tile.
 void mix_rays(const FroxelGrid& grid, const FroxelSums& sums, const Places& places, const int32_t (&slice)[16],
               FaceSums& result) {
     alignas(64) float values[2][64]; // [face][4 · lane + channel]
@@ -70,7 +70,7 @@ void mix_rays(const FroxelGrid& grid, const FroxelSums& sums, const Places& plac
 FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Places& places, const Floats& z) {
     constexpr int few = 4;
     const FroxelGrid& grid = picture.grid;
-    const float* columns[16]; // of the tiles around, where those are the same for all rays
+    const float* columns[16]; // of the surrounding tiles, if they are the same for all rays
     for (int t = 0; t < places.count && places.together; ++t)
         columns[t] = sums.at(grid, static_cast<size_t>(places.tiles[t][0]), 0);
     const SliceLanes slices = slices_around(grid, z);
@@ -88,11 +88,11 @@ FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Pla
     return result;
 }
 
-// Light before a depth and optical depth up to it. Within the slice the light comes as from homogeneous fog.
+// Light in front of a depth, and optical depth up to it. Inside a slice, light is interpolated as in homogeneous fog.
 struct Reached {
     Vec3s light;
     Floats depth;     // of the ray
-    Floats last;      // share of the slice's light that lies before the depth
+    Floats last;      // fraction of the slice's light in front of the depth
     Vec3s last_light; // from the last slice
 };
 Reached reach(const FaceSums& faces, const Places& places, float view_depth) {
@@ -104,7 +104,8 @@ Reached reach(const FaceSums& faces, const Places& places, float view_depth) {
     reached.last = faces.share * mean_transmittance(within * view_depth) / mean_transmittance(across * view_depth);
     const Vec3s near{faces.near[0], faces.near[1], faces.near[2]}, far{faces.far[0], faces.far[1], faces.far[2]};
     reached.last_light = (far - near) * reached.last;
-    // The tiles' lines are a little longer or shorter than the ray: in homogeneous fog the light is as 1 - e^-depth.
+    // The tiles' lines are slightly longer or shorter than the ray: in homogeneous fog, light is proportional to 1 -
+    // e^-depth.
     const Floats depth = reached.depth * view_depth, ratio = slant / places.tile_slant;
     const Floats fitted = ratio * mean_transmittance(depth) / mean_transmittance(depth / ratio);
     reached.light = (near + reached.last_light) * fitted;
@@ -112,8 +113,8 @@ Reached reach(const FaceSums& faces, const Places& places, float view_depth) {
     return reached;
 }
 
-// Light of a stretch that begins behind fog: what lies before it is taken off, and what dims it is undone. Where hardly
-// anything passes the fog before, neither can be told from rounding, nor seen.
+// Light of a segment that starts behind fog: subtracts the light in front of it and divides by the transmittance up to
+// it. Very small transmittances are clamped: such a segment is invisible, and its light would be rounding errors.
 Vec3s light_between(const Reached& start, const Reached& end, float view_depth) {
     constexpr float least = 1e-4f;
     const Floats undone = 1.0f / max(exp(start.depth * -view_depth), least);
@@ -125,7 +126,8 @@ void store_light(const Vec3s& light, float (&rgb)[3][16]) {
     store(light.x, rgb[0]), store(light.y, rgb[1]), store(light.z, rgb[2]);
 }
 
-// A surface may cut the ray's last froxels short: their light is known for the part before it only.
+// Validity, reduced by the fraction of light from the ray's last slice if a surface may cut through its froxels, whose
+// light is known only in front of the surface.
 Floats validity_of(const Places& places, const FaceSums& faces, const Reached& end, const Vec3s& beams) {
     const Floats all = end.light.x + end.light.y + end.light.z + beams.x + beams.y + beams.z;
     const Floats of_last = end.last_light.x + end.last_light.y + end.last_light.z;
@@ -133,7 +135,7 @@ Floats validity_of(const Places& places, const FaceSums& faces, const Reached& e
     return max(min(places.kept * (1.0f - last), 1.0f), 0.0f);
 }
 
-// Light of all beams; that of each to `of_beams`, where wanted.
+// Light of all beams; that of each goes to `of_beams`, unless empty.
 Vec3s all_beams(const FroxelPicture& picture, const RayBatch& batch, const Places& places, const Floats& depth_before,
                 std::span<vec3> of_beams) {
     Vec3s sum = splat(vec3(0));

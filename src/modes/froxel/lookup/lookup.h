@@ -1,4 +1,4 @@
-// Fog along camera rays, found among integrated froxels.
+// Fog along camera rays, interpolated from integrated froxels.
 #pragma once
 #include "integrate/ray_batch.h"
 #include "modes/froxel/lookup/integrate.h"
@@ -12,11 +12,11 @@ struct FroxelPicture {
     FroxelLookup lookup = FroxelLookup::trilinear;
     float view_depth = 1;
     FroxelBeams beams;
-    const FroxelScene* scene = nullptr; // of the beams, where there are some
+    const FroxelScene* scene = nullptr; // of the beams; null without any
 };
 
-// Radiance, transmittance and validity of up to 16 rays of the grid's camera, each by itself. `parts` are further sums
-// over the same froxels; their light goes to `of_parts`, rays × parts; that of the beams to `of_beams`, rays × beams.
+// Radiance, transmittance and validity of up to 16 rays of the grid's camera. `parts` are further sums over the same
+// froxels: their light goes to `of_parts`, rays × parts; that of the beams to `of_beams`, rays × beams.
 void look_up_froxels(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
                      std::span<const FroxelSums> parts = {}, std::span<vec3> of_parts = {},
                      std::span<vec3> of_beams = {});

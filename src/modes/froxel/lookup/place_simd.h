@@ -1,4 +1,4 @@
-// Where sixteen rays of the grid's camera lie among the froxels (see base/simd/simd.h for how such files are compiled).
+// Positions of 16 camera rays in the froxel grid (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_LOOKUP_PLACE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_LOOKUP_PLACE_SIMD_H
 #undef TYNDALL_MODES_FROXEL_LOOKUP_PLACE_SIMD_H
@@ -14,21 +14,21 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Rays: planar depths of their ends, metres of ray per metre of depth, and the tiles around them.
+// Per ray: planar depths of its ends, length per meter of planar depth (slant), and the tiles around it.
 struct Places {
     Floats start, end, slant;
-    Floats tile_slant;                 // mean of the tiles' lines
-    Mask16 seen;                       // by the grid's camera
+    Floats tile_slant;                 // weighted mean of the tiles' slants
+    Mask16 seen;                       // in front of the grid's camera
     int count = 4;                     // of tiles around a ray
     bool together = false;             // all rays lie between the same tiles
     alignas(64) int32_t tiles[16][16]; // [tile][ray]
     alignas(64) float weights[16][16]; // sum 1
     Floats kept;                       // weight of the tiles that see as far as the ray
-    Ints own;                          // the tile that the pixel lies in
-    Floats nearest;                    // surface that it sees
+    Ints own;                          // the tile that contains the pixel
+    Floats nearest;                    // planar depth of the nearest surface it sees
 };
 
-// The slices that hold planar depths, as slice_of().
+// The slices that contain planar depths, as slice_of().
 HWY_INLINE Ints slices_of(const FroxelGrid& grid, const Floats& z) {
     const Floats place = (z - grid.faces.front()) * grid.stretches_per_metre;
     const float last = static_cast<float>(grid.first_slice.size()) - 1,
@@ -41,7 +41,7 @@ HWY_INLINE Ints slices_of(const FroxelGrid& grid, const Floats& z) {
     }
 }
 
-// The slices that hold planar depths, and their faces. Neighbouring rays mostly end within a few slices.
+// The slices that contain planar depths, and their faces. Neighboring rays mostly end within a few slices.
 struct SliceLanes {
     Ints slice;
     Floats before, behind;
@@ -64,7 +64,7 @@ HWY_INLINE SliceLanes slices_around(const FroxelGrid& grid, const Floats& z) {
     return {slice, gather(grid.faces.data(), slice), gather(grid.faces.data() + 1, slice), first, last};
 }
 
-// First tile and weights along one axis: 2 of a linear look-up, 4 of a cubic B-spline.
+// First tile and weights along one axis: 2 for linear interpolation, 4 for a cubic B-spline.
 struct Axis {
     Ints first;
     Floats weights[4];
@@ -86,12 +86,12 @@ HWY_INLINE bool all_same(const Ints& index) {
     return !any(difference > 0.0f);
 }
 
-// As gather(), which takes its time where all lanes want the same.
+// Same as gather(), but fast if all lanes have the same index.
 HWY_INLINE Floats value_at(const float* values, const Ints& index) {
     return all_same(index) ? Floats(values[hn::GetLane(index.part[0])]) : gather(values, index);
 }
 
-// Behind what a tile sees its sums mean nothing; only where no tile sees far enough are they taken after all.
+// Reduces the weights of tiles that do not see as far as a ray; where none does, all keep their relative weights.
 void distrust_blind(const FroxelTiles& tiles, const Mask16& blind, Places& places) {
     constexpr float least = 1e-5f;
     Floats total = 0.0f, kept = 0.0f, weights[16];
@@ -150,7 +150,8 @@ void jitter_places(const RayBatch& batch, Floats& x, Floats& y) {
     x = load(at_x), y = load(at_y);
 }
 
-// Rays that only the fog ends. Its last slice holds it spread evenly: where nothing else is seen around they take all.
+// Rays that end with the fog, not at a surface. The last slice spreads its fog evenly, so rays with no surface nearby
+// integrate all of it.
 Mask16 open_rays(const RayBatch& batch) {
     alignas(64) float open[16];
     for (size_t i = 0; i < 16; ++i) open[i] = i < batch.open.size() && batch.open[i] ? 1.0f : 0.0f;
@@ -181,7 +182,7 @@ void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& pla
             const Ints tile = max(min(y.first + Ints(j), grid.size.y - 1), 0) * grid.size.x + column;
             store(tile, places.tiles[side * j + k]), store(x.weights[k] * y.weights[j], places.weights[side * j + k]);
         }
-    // The tile at or before the pixel knows whether all around it see far enough.
+    // The minimum around the tile at or before the pixel says whether all tiles see far enough.
     const Ints cell = (y.first + Ints(cubic)) * grid.size.x + (x.first + Ints(cubic));
     places.together = all_same(cell);
     const Floats trusted = value_at(picture.tiles.trusted_around.data(), cell);
@@ -196,9 +197,9 @@ void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& pla
     }
 }
 
-// Whether all rays begin at the very place of the camera.
+// Whether all rays start exactly at the camera's position.
 HWY_INLINE bool from_the_eye(const Camera& camera, const RayBatch& batch) {
-    static_assert(offsetof(Ray, direction) == 3 * sizeof(float)); // four floats from the origin on are within the ray
+    static_assert(offsetof(Ray, direction) == 3 * sizeof(float)); // four floats from `origin` on are inside the Ray
     if (camera.ortho_height > 0) return false;
     using Tag = hn::CappedTag<float, 4>;
     constexpr size_t lanes = hn::MaxLanes(Tag());
