@@ -29,7 +29,7 @@ void add_options(const CommandLine& program, Texts& texts) {
     };
     quality("--mode", texts.mode, "NAME", "technique (default: march); tyndall modes lists them");
     quality("--stand-in", texts.stand_in, "NAME",
-            "technique of quick images while march and path move (default:\nfroxel), or none: the same");
+            "technique of quick images while the view changes in march and path\n(default: froxel), or none: the same");
     quality("--quality", texts.quality, "NAME", "draft, preview (default), final or reference");
     program
         .options("--set", texts.settings, "one setting, for instance march.step_depth=0.1; may be repeated",
@@ -38,21 +38,20 @@ void add_options(const CommandLine& program, Texts& texts) {
     option("--camera", texts.camera, "NAME", "camera by name (default: the scene's)");
     option("--res", texts.resolution, "WxH", "image size in pixels (default: the scene's)");
     option("--exposure", texts.exposure, "EV",
-           "how much brighter (+) or darker (-) than light the image is shown, in\nstops, or auto: measured "
+           "exposure of the displayed image, in stops, or auto: measured\n"
            "(default: the scene's, auto where it states none)");
     option("--view-transform", texts.view_transform, "NAME",
-           "how what is brighter than a screen is shown: filmic (AgX; default) or srgb");
-    quality("--samples", texts.samples, "N", "samples per pixel at which an image is good enough (default: 64)");
+           "how values brighter than the display are shown: filmic (AgX;\ndefault) or srgb");
+    quality("--samples", texts.samples, "N", "samples per pixel of a finished image (default: 64)");
     quality("--seed", texts.seed, "N", "another pattern of noise (default: 0)");
-    option("--light-units", texts.units, "UNITS",
-           "what a glTF's light intensities mean: spec (default), unitless, raw");
+    option("--light-units", texts.units, "UNITS", "units of a glTF's light intensities: spec (default), unitless, raw");
     option("--missing", texts.missing, "WHAT", "a missing frame of a VDB sequence: error (default), hold, skip");
-    option("--fps", texts.rate, "N", "images per second wanted while things move (default: 30)");
+    option("--fps", texts.rate, "N", "target images per second while things move (default: 30)");
     option("--window", texts.window, "WxH", "size of the window (default: 1280x800)");
     option("--threads", texts.threads, "N", "threads to use, 1 to 1024 (default: every core)");
     option("--script", texts.script, "FILE",
-           "actions to do, one a line; the window stays open unless the last is quit");
-    program.flag("--stats", texts.stats, "at the end, times of interface and images on stdout");
+           "file of actions, one per line; the window stays open unless the last\nis quit");
+    program.flag("--stats", texts.stats, "print times of the interface and the images on stdout at the end");
 }
 
 std::string footer() {
@@ -99,8 +98,7 @@ ViewerOptions read_options(const Texts& texts) {
 }
 
 int run(int argc, char** argv) {
-    const CommandLine program("tyndall view",
-                              "look at a scene while it is lit: every technique, every setting, at once",
+    const CommandLine program("tyndall view", "view a scene while lighting it, with every technique and setting",
                               "tyndall-view " TYNDALL_VERSION, "Options");
     Texts texts;
     add_options(program, texts);

@@ -72,8 +72,8 @@ Run add_bake(const Command& program) {
     command.flag("--float", texts->full_float, "store 32-bit floats; 16 bits otherwise, enough for fog");
     command.option("--compression", texts->compression, "blosc (default) or zip, for readers without Blosc", "NAME");
     command.flag("--velocity", texts->velocity,
-                 "a grid \"vel\" as well: metres per second that the fog is advected at");
-    command.flag("--resume", texts->resume, "keep frames that are already there and still right");
+                 "also write a grid \"vel\": the velocity that advects the fog, in metres per second");
+    command.flag("--resume", texts->resume, "skip frames that exist and are up to date");
     command.footer("Example: two seconds of drifting dust with 4 cm voxels\n"
                    "  tyndall bake volumes/drifting_dust.json -o fog/dust.####.vdb --frames 1-48 --voxel-size 0.04\n"
                    "Then look at a frame with tyndall info, or name the files in a scene's media.");

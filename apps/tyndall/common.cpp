@@ -45,7 +45,7 @@ int exit_code_of(const std::function<int()>& work) {
     try {
         return work();
     } catch (const std::bad_alloc&) {
-        return report("out of memory: fewer pixels, coarser voxels or a machine with more memory help",
+        return report("out of memory: use fewer pixels, coarser voxels or a machine with more memory",
                       ExitCode::out_of_memory);
     } catch (const Error& error) {
         if (!cancel_flag()) return report(error.what(), error.code);

@@ -46,6 +46,6 @@ FileKind file_kind(const std::filesystem::path& file) {
     if (bytes.starts_with("glTF")) return FileKind::gltf;
     if (bytes.starts_with("\x76\x2f\x31\x01")) return FileKind::exr;
     if (bytes.starts_with("IESNA") || bytes.starts_with("IES:LM-6")) return FileKind::ies;
-    refuse(file.string(), "not a kind of file tyndall knows (.vdb .nvdb .gltf .glb .json .exr .ies)");
+    refuse(file.string(), "unknown kind of file; expected one of (.vdb .nvdb .gltf .glb .json .exr .ies)");
 }
 }

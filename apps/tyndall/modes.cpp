@@ -63,8 +63,8 @@ std::string table_text() {
     for (const Mode& mode : modes())
         text += formatted("  %-13s %-20s %s\n", std::string(mode.name).c_str(),
                           std::string(name_of(mode.accuracy)).c_str(), std::string(mode.summary).c_str());
-    return text +
-           "\ntyndall modes MODE says what one is for and which settings it reads; --settings lists all settings.\n";
+    return text + "\ntyndall modes MODE shows what a mode is for and which settings it reads; --settings lists all "
+                  "settings.\n";
 }
 
 std::string mode_text(const Mode& mode) {
@@ -82,8 +82,8 @@ Run add_modes(const Command& program) {
     const Command command = program.command("modes", "the rendering techniques and their settings");
     const auto name = std::make_shared<std::string>();
     const auto settings = std::make_shared<bool>(false);
-    command.option("MODE", *name, "only this one, and the settings it reads (default: a line for each)", "");
-    command.flag("--settings", *settings, "also every setting of all modes (--json has them in any case)");
+    command.option("MODE", *name, "show only this mode and the settings it reads (default: one line per mode)", "");
+    command.flag("--settings", *settings, "also list all settings of all modes (--json always does)");
     command.footer("Example: what froxel is for, and its settings\n  tyndall modes froxel\n"
                    "Example: all settings as JSON, for a script\n  tyndall modes --json");
     return [name, settings](const Globals& globals) {

@@ -17,7 +17,8 @@ int start_viewer(std::vector<std::string> arguments) {
     const std::filesystem::path own = std::filesystem::read_symlink("/proc/self/exe", ignored);
     const std::string viewer = (own.parent_path() / viewer_program).string();
     if (!std::filesystem::exists(viewer, ignored))
-        fail(ExitCode::unreadable, viewer, "the viewer is not there; it is built where GLFW and Dear ImGui are");
+        fail(ExitCode::unreadable, viewer,
+             "the viewer is not installed; it is only built where GLFW and Dear ImGui are found");
     arguments.insert(arguments.begin(), viewer_program);
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -27,7 +28,7 @@ int start_viewer(std::vector<std::string> arguments) {
 }
 
 Run add_view(const Command& program) {
-    const Command command = program.command("view", "look at a scene while it is lit: the viewer");
+    const Command command = program.command("view", "open a scene in the interactive viewer");
     command.pass_on();
     return [command](const Globals&) { return start_viewer(command.passed_on()); };
 }

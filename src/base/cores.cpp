@@ -1,13 +1,13 @@
 #include "base/cores.h"
 
+#include "base/control_group.h"
+
 #include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -21,21 +21,6 @@ int affinity_cores() {
         if (sched_getaffinity(0, bytes, mask.data()) == 0) return CPU_COUNT_S(bytes, mask.data());
     }
     return static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
-}
-
-std::string first_line(const std::filesystem::path& path) {
-    std::ifstream stream(path);
-    std::string line;
-    std::getline(stream, line);
-    return line;
-}
-
-// Path of this process's cgroup in the v2 hierarchy, from a line such as "0::/batch/job_7".
-std::string control_group() {
-    std::ifstream stream("/proc/self/cgroup");
-    for (std::string line; std::getline(stream, line);)
-        if (line.starts_with("0::/")) return line.substr(4);
-    return {};
 }
 }
 
@@ -51,12 +36,8 @@ int granted_cores(std::string_view cpu_max) {
 
 int usable_cores() {
     int cores = std::max(affinity_cores(), 1);
-    // Every ancestor group may set its own limit.
-    const std::filesystem::path root = "/sys/fs/cgroup";
-    for (std::filesystem::path group = control_group();; group = group.parent_path()) {
-        const int granted = granted_cores(first_line(root / group / "cpu.max"));
-        if (granted > 0) cores = std::min(cores, granted);
-        if (group.empty()) return cores;
-    }
+    for (const std::string& line : control_group_lines("cpu.max"))
+        if (const int granted = granted_cores(line); granted > 0) cores = std::min(cores, granted);
+    return cores;
 }
 }

@@ -46,14 +46,14 @@ std::string shortened_place(std::string_view where) {
 std::span<const ExitCodeMeaning> exit_codes() {
     static constexpr ExitCodeMeaning table[] = {
         {ExitCode::ok, "done"},
-        {ExitCode::differs, "a larger error than asked for (render), no mode that gets there (plan), problems found "
-                            "(check), a limit exceeded (compare), a proof that failed (verify), a mode that fails "
-                            "silently (stress)"},
-        {ExitCode::usage, "the command line is wrong"},
-        {ExitCode::refused, "an input is wrong: the message names file and field"},
+        {ExitCode::differs,
+         "error target not reached (render), no mode meets the target (plan), problems found (check), a limit "
+         "exceeded (compare), a failed check (verify), a mode that fails silently (stress)"},
+        {ExitCode::usage, "invalid command line"},
+        {ExitCode::refused, "invalid input: the message names file and field"},
         {ExitCode::unreadable, "an input is missing or cannot be read"},
         {ExitCode::unwritable, "the output cannot be written"},
-        {ExitCode::non_finite, "done, but some samples or pixels were not finite numbers"},
+        {ExitCode::non_finite, "done, but some samples or pixels were not finite"},
         {ExitCode::out_of_memory, "out of memory"},
         {ExitCode::no_display, "no display for the viewer, or a processor without AVX2"},
         {ExitCode::internal, "internal error: a bug in tyndall"},

@@ -112,8 +112,8 @@ std::string unknown_name(std::string_view kind, std::string_view name, const std
     if (near.size() > max_near) near.resize(max_near);
     std::string text = "no " + std::string(kind) + " '" + printable(name, 60) + "'";
     if (!near.empty()) return text + "; did you mean " + joined(near, " or ") + "?";
-    if (known.empty()) return text + "; there is none";
-    return known.size() > longest_list ? text : text + "; there is " + joined(known, ", ");
+    if (known.empty()) return text + "; none exist";
+    return known.size() > longest_list ? text : text + "; available: " + joined(known, ", ");
 }
 
 size_t choice_among(std::string_view where, std::string_view text, const std::vector<std::string>& choices) {

@@ -8,27 +8,25 @@ struct View;
 
 namespace limitation {
 inline constexpr LimitationKind mean_environment{
-    "mean_environment", "in the fog its light is its mean from all around, shadowed by nothing: some {}% off what "
-                        "the fog scatters of {} nits"};
+    "mean_environment", "its light in fog is replaced by its unshadowed mean: an error of about {}% (mean {} nits)"};
 inline constexpr LimitationKind environment_left_out{"environment_left_out",
-                                                     "its light in the fog is left out: {} nits from all around"};
+                                                     "its light is ignored in fog (mean {} nits)"};
 inline constexpr LimitationKind lamp_for_face{
-    "lamp_for_face", "in the fog it shines from its middle, as a lamp of {} m radius: off by more than 10% within {} m "
-                     "of it"};
+    "lamp_for_face", "approximated in fog by a lamp of {} m radius at its center: error above 10% within {} m"};
 inline constexpr LimitationKind out_of_gamut{
-    "out_of_gamut", "{}% of its light, below {n} K, is redder than Rec.709 can be: shown as red as can be"};
+    "out_of_gamut", "{}% of its light, below {n} K, is outside the Rec.709 gamut: clamped to the reddest color"};
 inline constexpr LimitationKind unscattered_emission{
-    "unscattered_emission", "its light is seen and lights nothing: {} lumens are not scattered (path follows them)"};
+    "unscattered_emission", "its emission is visible but illuminates nothing: {} lumens (path includes them)"};
 inline constexpr LimitationKind lamps_for_fire{
-    "lamps_for_fire", "in the fog its light is off by more than 10% within {} m of the {n} lamps that stand for it"};
+    "lamps_for_fire", "its light in fog has an error above 10% within {} m of the {n} lamps that approximate it"};
 inline constexpr LimitationKind lamps_for_surfaces{
     "lamps_for_surfaces",
-    "in the fog its light is off by more than 10% within {} m of the {n} lamps that stand for glowing surfaces"};
+    "its light in fog has an error above 10% within {} m of the {n} lamps that approximate emissive surfaces"};
 inline constexpr LimitationKind emission_lights_nothing{
-    "emission_lights_nothing", "emission of surfaces with holes or alpha is visible but lights nothing else"};
-inline constexpr LimitationKind emission_lights_no_fog{
-    "emission_lights_no_fog", "its emission lights surfaces, but what fog scatters of it is left out"};
-inline constexpr LimitationKind emission_left_out{"emission_left_out", "its light is left out: {} lumens"};
+    "emission_lights_nothing", "emission of MASK and BLEND surfaces is visible but illuminates nothing else"};
+inline constexpr LimitationKind emission_lights_no_fog{"emission_lights_no_fog",
+                                                       "its emission illuminates surfaces, but is ignored in fog"};
+inline constexpr LimitationKind emission_left_out{"emission_left_out", "its emission is ignored: {} lumens"};
 }
 
 // Reports emission of media outside the Rec.709 gamut and, with `lights_nothing`, emission without a grid, which is

@@ -30,7 +30,6 @@ ScatterFunction from_fog_buffer(const View& view, const Snapshot& snapshot, cons
 // An image size at a reduced resolution, rounded up.
 ivec2 shared_size(ivec2 size, Resolution share);
 
-struct FogBuffer;
 struct Medium;
 
 // Averages each pixel with neighbors of similar ray length. The weights ½ 1 1 1 ½ along each side give every phase of a

@@ -10,9 +10,9 @@ struct View;
 namespace limitation {
 inline constexpr LimitationKind fog_through_middle{
     "fog_through_middle",
-    "its fog lacks a blur of up to {} pixels (at {} m): it is seen through the middle of the lens"};
-inline constexpr LimitationKind no_fog_picture{
-    "no_fog_picture", "does nothing: through a lens the fog of every ray is computed by itself"};
+    "fog lacks a depth-of-field blur of up to {} pixels (at {} m): it is seen through the center of the lens"};
+inline constexpr LimitationKind no_fog_picture{"no_fog_picture",
+                                               "has no effect: with a lens, fog is computed for every ray"};
 }
 
 // Wraps `scatter` to evaluate rays from the center of the lens through the same points in the plane of focus, with the

@@ -7,14 +7,14 @@ struct Light;
 struct Snapshot;
 
 namespace limitation {
-inline constexpr LimitationKind sampled_gobo{
-    "sampled_gobo", "its gobo or IES profile has {} texels or angles for each place where a ray looks at it: edges are "
-                    "noise that more samples resolve"};
+inline constexpr LimitationKind sampled_gobo{"sampled_gobo",
+                                             "its gobo or IES profile has {} texels or angles per sample along a ray: "
+                                             "edges are noisy; more samples resolve them"};
 inline constexpr LimitationKind blurred_filter{"blurred_filter",
-                                               "what its IES profile or gobo has finer than {} degrees is lost"};
+                                               "detail of its IES profile or gobo finer than {} degrees is lost"};
 inline constexpr LimitationKind mean_filter{
     "mean_filter",
-    "its IES profile, gobo or cosine is drawn as its mean: what the light sends varies by {} times that"};
+    "its IES profile, gobo or cosine emission is replaced by its mean; the standard deviation is {} times that mean"};
 }
 
 // Replaces each light's filter by its mean, equal in all directions.

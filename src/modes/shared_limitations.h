@@ -24,43 +24,41 @@ inline constexpr LimitationKind long_steps{
     "long_steps",
     "steps of about {} m are longer than a voxel ({} m): fine detail is blurred or noisy; more steps resolve it"};
 inline constexpr LimitationKind deep_steps{"deep_steps",
-                                           "steps are up to {} optical depths deep (about {} m): how light fades "
-                                           "within a step is not resolved; more steps resolve it"};
+                                           "steps are up to {} optical depths deep (about {} m): attenuation within a "
+                                           "step is not resolved; more steps resolve it"};
 inline constexpr LimitationKind cached_fluence{"cached_fluence",
                                                "multiple scattering is cached in cells of {} m: it has no finer "
                                                "detail, and may leak around corners within a cell"};
 inline constexpr LimitationKind table_by_mean_cosine{
-    "table_by_mean_cosine", "multiple scattering knows the mean cosine of its phase function only: at right angles it "
-                            "scatters {} times as much as the table says"};
+    "table_by_mean_cosine",
+    "multiple scattering uses only the mean cosine of its phase function: at 90 degrees {} times the tabulated value"};
 inline constexpr LimitationKind fog_scatters_alone{
-    "fog_scatters_alone", "multiple scattering is computed for the fog and its lights only: surfaces get direct light "
-                          "alone, and ambient light and emission are not scattered further"};
+    "fog_scatters_alone", "multiple scattering is computed for fog and lights only: surfaces receive only direct "
+                          "light, and ambient light and emission are not scattered further"};
 inline constexpr LimitationKind unbounded_fluence{
     "unbounded_fluence", "in unbounded fog, multiple scattering is computed in and around the scene only"};
-inline constexpr LimitationKind orders_left_out{"orders_left_out", "scattering orders above {n} are left out"};
+inline constexpr LimitationKind orders_left_out{"orders_left_out", "scattering orders above {n} are ignored"};
 inline constexpr LimitationKind drawn_as_homogeneous{"drawn_as_homogeneous",
-                                                     "drawn as homogeneous fog of its mean density"};
-inline constexpr LimitationKind mean_emission_color{
-    "mean_emission_color", "its light is drawn in its mean color, which {}% of it differs from, and straight between "
-                           "voxels whatever the temperature there"};
+                                                     "rendered as homogeneous fog of its mean density"};
+inline constexpr LimitationKind mean_emission_color{"mean_emission_color",
+                                                    "its emission is rendered in its mean color, an average error of "
+                                                    "{}%, and its brightness is interpolated linearly between voxels"};
 inline constexpr LimitationKind mean_albedo{"mean_albedo",
-                                            "scatters in its mean color, which {}% of what it scatters differs from"};
+                                            "its albedo is replaced by its mean color, an average error of {}%"};
 inline constexpr LimitationKind shutter_moments{
-    "shutter_moments", "things move up to {} pixels on the image between two of the {n} moments that motion blur is "
-                       "made of (--time-samples)"};
-inline constexpr LimitationKind shutter_fades{
-    "shutter_fades", "its brightness changes so much between two of the moments that motion blur is made of that it is "
-                     "off by up to {}% (--time-samples)"};
+    "shutter_moments", "motion of up to {} pixels between two of the {n} time samples of motion blur (--time-samples)"};
+inline constexpr LimitationKind shutter_fades{"shutter_fades",
+                                              "its brightness changes so much between two time samples of motion blur "
+                                              "that it has an error of up to {}% (--time-samples)"};
 inline constexpr LimitationKind still_volumes{
-    "still_volumes", "its files are one a frame: it stands still for the {} s that the shutter is open (a \"velocity\" "
-                     "in its \"grids\" moves it, \"blend\" in its \"sequence\" mixes files)"};
+    "still_volumes", "has one file per frame, so it does not move during the {} s of the open shutter (a \"velocity\" "
+                     "in its \"grids\" moves it, \"blend\" in its \"sequence\" blends files)"};
 inline constexpr LimitationKind blended_volumes{
-    "blended_volumes",
-    "while the shutter is open two of its files are mixed, with up to {}% of the lesser: what moves by "
-    "more than a voxel from file to file is seen twice"};
-inline constexpr LimitationKind advected_volumes{
-    "advected_volumes", "moves along straight lines by its velocities, up to {} voxels from where its file has it, "
-                        "through {n} places"};
+    "blended_volumes", "two of its files are blended while the shutter is open, with up to {}% of the lesser: features "
+                       "that move more than a voxel between files appear twice"};
+inline constexpr LimitationKind advected_volumes{"advected_volumes",
+                                                 "moved along straight lines by its velocities, up to {} voxels from "
+                                                 "its position in the file, through {n} positions"};
 inline constexpr LimitationKind visibility_off{"visibility_off", "visibility is off: no shafts"};
 inline constexpr LimitationKind unattenuated_light{
     "unattenuated_light", "light-side transmittance is off: fog does not dim the light that crosses it"};

@@ -59,7 +59,7 @@ std::shared_ptr<Gobo> make_gobo(std::string_view bytes, ColorSpace space, std::s
         decode_reduced(bytes, space == ColorSpace::linear, largest_gobo_side, reduced_gobo_side, where, note);
     if (picture.factor > 1)
         note += (note.empty() ? "" : "; ") + std::to_string(picture.size.x) + "x" + std::to_string(picture.size.y) +
-                " pixels, averaged down by " + std::to_string(picture.factor);
+                " pixels, downsampled by a factor of " + std::to_string(picture.factor);
     std::shared_ptr<Gobo> gobo = gobo_of(picture);
     gobo->content = content_hash(bytes);
     return gobo;

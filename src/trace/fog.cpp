@@ -41,7 +41,7 @@ mat4 checked_matrix(const Scene& scene, const MediumSource& source, double secon
     const mat4 matrix = medium_matrix(source, seconds);
     const float determinant = glm::determinant(mat3(matrix));
     if (!std::isfinite(determinant) || determinant == 0)
-        refuse(scene.file.string(), named("medium", source.name) + ": its scale or rotation leaves it no volume");
+        refuse(scene.file.string(), named("medium", source.name) + ": its transform is singular or out of range");
     return matrix;
 }
 
@@ -248,7 +248,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
         if (!dims) medium.optics.extinction = vec3(min_extinction);
         if (!dims && !is_finite(medium.world_bounds.size()))
             refuse(scene.file.string(),
-                   named("medium", source.name) + ": emits without end; give it bounds or an extinction");
+                   named("medium", source.name) + ": emits in unbounded space; give it bounds or an extinction");
         if (fog.grids) color_medium(source, moment.seconds, *fog.grids, medium);
         snapshot.media.push_back(std::move(medium));
     }

@@ -63,6 +63,7 @@ std::string grids_text(const GridSource& source) {
 
 // Shared arguments for reading properties.
 struct Reading {
+    const std::string& medium; // its name
     Moment moment;
     const SequenceTime& time;
     MissingFrame missing;
@@ -140,7 +141,7 @@ GridProperty read(const std::optional<GridSource>& source, size_t number, Quanti
     CacheFolder* files = reading.snapshot.files.get();
     std::string content;
     if (files) content = "property " + content_hash(here.content + "\n" + next.content + "\n" + time.content());
-    const std::string what = "medium " + source->grids[0];
+    const std::string what = named("medium", reading.medium);
     return property_of(found_or_made<StoredProperty>(
                            files, "bricks", content,
                            [&] { return property_between(time, here.property, next.property, quantity, what); }),
@@ -209,7 +210,7 @@ EmissionPart colored_part(const MediumSource& source, const MediumGrids& grids) 
     if (!grids.emission) return {};
     for (const PlacedBricks& channel : grids.emission.channels)
         if (channel.index_to_world != grids.emission.channels[0].index_to_world)
-            refuse(named("medium", source.name), "the three grids of its emission have different transforms");
+            refuse(named("medium", source.name), "its three emission grids have different transforms");
     EmissionField field;
     field.source = bricks_of(grids.emission);
     return part_of(std::move(field), grids.emission.channels[0].index_to_world, source.name);
@@ -290,7 +291,7 @@ bool has_grids(const MediumSource& source) {
 std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, const SequenceTime& time,
                                                 MissingFrame missing, const mat4& matrix, const FogSource& fog,
                                                 const MediumGrids* before, FogFrames& frames, Snapshot& snapshot) {
-    const Reading reading{moment, time, missing, before, frames, snapshot};
+    const Reading reading{source.name, moment, time, missing, before, frames, snapshot};
     auto grids = std::make_shared<MediumGrids>();
     grids->albedo = read(source.albedo_grid, 0, Quantity::share, reading, before ? &before->albedo : nullptr);
     grids->emission = read(source.emission_grid, 1, Quantity::color, reading, before ? &before->emission : nullptr);

@@ -34,7 +34,7 @@ Frame node_frame(const Scene& scene, int node, double seconds, const std::string
     const mat4 matrix = node_matrix(scene, node, seconds);
     const vec3 back(matrix[2]);
     if (!is_finite(vec3(matrix[3])) || !is_finite(back) || !(glm::length(back) > 0))
-        refuse(scene.file.string(), what + ": the transform of its node is degenerate");
+        refuse(scene.file.string(), what + ": the transform of its node is singular or not finite");
     return {vec3(matrix[3]), vec3(matrix[1]), -glm::normalize(back)};
 }
 
@@ -51,7 +51,7 @@ Light light_at(const Scene& scene, const LightSource& source, double seconds, ve
         const vec3 direction = source.direction.at(seconds);
         const float length = glm::length(direction);
         if (is_aimed(source) && !(length > 0))
-            refuse(scene.file.string(), named("light", source.name) + ": its direction has no length");
+            refuse(scene.file.string(), named("light", source.name) + ": its direction is zero");
         if (length > 0) light.direction = direction / length;
     }
     light.intensity = intensity_of(source, seconds);
@@ -173,7 +173,7 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     if (previous) snapshot.cache_before = previous->cache;
     const uint64_t dropped = snapshot.occluders->dropped();
     if (dropped > 0 && !(previous && previous->occluders->dropped() == dropped))
-        snapshot.notes.push_back(std::to_string(dropped) + " triangles without area or out of range left out");
+        snapshot.notes.push_back(std::to_string(dropped) + " triangles skipped: zero area or coordinates out of range");
     snapshot.bounds = scene_bounds(snapshot);
     return snapshot;
 }
@@ -284,7 +284,7 @@ void set_lens(const Scene& scene, const CameraSource& source, double seconds, Ca
     camera.lens.focus =
         source.focus ? source.focus->at(seconds) : glm::distance(camera.position, source.target.at(seconds));
     if (!(camera.lens.focus > 0))
-        refuse(scene.file.string(), "camera " + source.name + ": focus_distance is not above 0");
+        refuse(scene.file.string(), "camera " + source.name + ": focus_distance must be positive");
 }
 }
 
@@ -298,7 +298,7 @@ Camera camera_at(const Scene& scene, int camera, double seconds) {
         result.position = frame.position;
     } else {
         const vec3 position = source.position.at(seconds), target = source.target.at(seconds);
-        if (position == target) refuse(scene.file.string(), "camera " + source.name + ": position and target are one");
+        if (position == target) refuse(scene.file.string(), "camera " + source.name + ": position and target coincide");
         result = look_at(position, target, source.up.at(seconds), fov);
     }
     result.name = source.name;

@@ -27,10 +27,10 @@ struct PhaseTraits {
 };
 inline constexpr PhaseTraits phase_kinds[] = {
     {.name = "isotropic"},
-    {.name = "henyey_greenstein", .max_g = 1, .beyond = "g lies between -1 and 1"},
+    {.name = "henyey_greenstein", .max_g = 1, .beyond = "g must be between -1 and 1"},
     {.name = "schlick",
      .max_g = 0.5f,
-     .beyond = "Schlick's form departs from Henyey-Greenstein's beyond |g| = 0.5; use \"henyey_greenstein\""},
+     .beyond = "Schlick's approximation departs from Henyey-Greenstein beyond |g| = 0.5; use \"henyey_greenstein\""},
     {.name = "rayleigh"},
     {.name = "draine"},
     {.name = "mie"},

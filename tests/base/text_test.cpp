@@ -18,10 +18,10 @@ TEST(Text, AMistypedNameIsAnsweredWithTheNearestOnes) {
 
 TEST(Text, ANameLikeNoOtherIsAnsweredWithWhatThereIsWhereTheListIsShort) {
     EXPECT_EQ(unknown_name("mode", "raster", modes),
-              "no mode 'raster'; there is march, froxel, shadow-map, shadow-volume, path");
-    EXPECT_EQ(unknown_name("camera", "main", {}), "no camera 'main'; there is none");
+              "no mode 'raster'; available: march, froxel, shadow-map, shadow-volume, path");
+    EXPECT_EQ(unknown_name("camera", "main", {}), "no camera 'main'; none exist");
     EXPECT_EQ(unknown_name("row", "zzzz", std::vector<std::string>(100, "march.step_depth")), "no row 'zzzz'");
-    EXPECT_EQ(unknown_name("mode", "\x1b[2J", {}), "no mode '\\x1b[2J'; there is none");
+    EXPECT_EQ(unknown_name("mode", "\x1b[2J", {}), "no mode '\\x1b[2J'; none exist");
 }
 
 TEST(Text, LongLinesAreBrokenAtSpaces) {

@@ -42,7 +42,7 @@ class Render(ProgramTest):
         dark = self.write("dark.json", scene(media=[{"name": "haze", "type": "homogeneous", "extinction": 0.1}]))
         result = run("check", dark)
         self.assertEqual(result.returncode, 1, result.stdout)
-        self.assertIn("medium haze fills all space, so that no light of sun gets through", result.stdout)
+        self.assertIn("medium haze fills all space, so no light from sun gets through", result.stdout)
         self.assertEqual(run("check", self.write("lit.json", scene())).returncode, 0)
 
     def test_a_lamp_enclosed_by_its_bulb_is_told_and_mended(self):
@@ -62,7 +62,7 @@ class Render(ProgramTest):
         content = lit_scene(gltf="bulb.glb", lights=[lamp], resolution=[32, 18],
                             media=[{"type": "homogeneous", "extinction": 0.2, "bounds": box}])
         dark = self.write("dark.json", content)
-        words = 'light lamp is enclosed by the object "Bulb": 100 % of its light ends within 0.03'
+        words = 'light lamp is enclosed by the object "Bulb": 100 % of its light is blocked within 0.03'
         result = run("check", dark)
         self.assertEqual(result.returncode, 1, result.stdout)
         self.assertIn(words, result.stdout)

@@ -86,9 +86,9 @@ class CommandLine(ProgramTest):
         self.refuse(2, ["did you mean error?"], "compare", picture, picture, "--heatmap", self.path("h.png"), "--map", "eror")
 
     def test_unknown_names_without_one_like_them_get_the_list(self):
-        self.refuse(2, ["there is march, froxel"], *self.render("--mode", "rasterize"))
-        self.refuse(2, ["there is camera"], *self.render("--camera", "nobody"))
-        self.refuse(2, ["there is box, tent"], *self.render("--set", "pixel.filter=sharp"))
+        self.refuse(2, ["available: march, froxel"], *self.render("--mode", "rasterize"))
+        self.refuse(2, ["available: camera"], *self.render("--camera", "nobody"))
+        self.refuse(2, ["available: box, tent"], *self.render("--set", "pixel.filter=sharp"))
         self.refuse(2, ["tyndall modes --settings"], *self.render("--set", "zzzzzz=1"))
 
     def test_unknown_names_in_scenes_get_those_like_them(self):
@@ -150,7 +150,7 @@ class CommandLine(ProgramTest):
 
     def test_options_that_do_not_exist_are_not_swallowed(self):
         self.refuse(2, ["--motion-samples"], *self.render("--motion-samples", "1"))
-        for mode, why in [("march,march", "march is named twice"), ("march,auto", "name it alone")]:
+        for mode, why in [("march,march", "march is named twice"), ("march,auto", "do not combine it")]:
             self.refuse(2, [why], *self.render("--mode", mode))
 
     def test_what_a_mode_cannot_do_is_refused(self):

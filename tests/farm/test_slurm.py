@@ -126,7 +126,7 @@ class Slurm(ProgramTest):
         self.cluster.ask("scancel", "--batch", "--signal=TERM", "1_0")  # as a time limit does
         self.wait_until("PENDING")
         self.assertEqual([file.name for file in (folder / "parts").iterdir()], ["window.0001.part-1-of-1.checkpoint"])
-        self.assertIn("begun: 1 part,", run("status", folder).stdout)
+        self.assertIn("started: 1 part,", run("status", folder).stdout)
         if NIGHTLY:  # Slurm waits for two minutes before it starts it again
             self.wait_for(900)
             self.succeed("status", folder, "--verify")

@@ -52,7 +52,7 @@ TEST(Emission, WithoutEndIsRefused) {
     scene.media = {flame(0, everywhere())};
     const Error error = error_of([&] { make_snapshot(scene, Moment{0, 0}); });
     EXPECT_EQ(error.code, ExitCode::refused);
-    EXPECT_THAT(error.what(), HasSubstr("medium flame: emits without end"));
+    EXPECT_THAT(error.what(), HasSubstr("medium flame: emits in unbounded space"));
     scene.media = {flame(1e-9f, everywhere())};
     EXPECT_EQ(make_snapshot(scene, Moment{0, 0}).media.size(), 1u);
 }

@@ -127,7 +127,7 @@ def strangers(shop):
         Fault("plan cut", {"frame.json": (shop.folder / "frame.json").read_bytes()[:500]}, words=("frame.json",)),
         *(Fault(f"gap: {name}", parts=[n for n in names if n != name], words=("a part is missing",)) for name in names),
         *(Fault(f"doubled: {name}", parts=[*names, name], words=(name,)) for name in names),
-        *(Fault(f"copied: {name}", {"copy.exr": files[name]}, parts=[*names, "copy.exr"], words=("holds samples that",))
+        *(Fault(f"copied: {name}", {"copy.exr": files[name]}, parts=[*names, "copy.exr"], words=("has samples that are also in",))
           for name in names),
         Fault("part gone", {one: None}, codes=(MISSING,), words=(one,)),
         Fault("a frame for a part", {one: shop.whole}, words=(one,)),

@@ -31,7 +31,7 @@ SHIPPED = {  # scenes of the repository and what is asked of them
     "window": ("--mode", "march", "--samples", 16, *SIZE, "--aov", LAYERS + SPREAD),
     "cloud": ("--mode", "path", "--orders", "all", "--samples", 4, *SIZE, "--aov", LAYERS + SPREAD),
     "lantern": ("--mode", "march", "--target-error", 0.03, *SIZE, "--aov", LAYERS + SPREAD)}
-LIMIT = re.compile(r"this frame has (\d+) parts at most")
+LIMIT = re.compile(r"this frame can have at most (\d+) parts")
 
 
 def options_of(chance, size):

@@ -234,13 +234,13 @@ TEST(ExrPicture, SaysWhatItIsNot) {
     Imf::Header layers = header_of(sky, {});
     layers.channels() = Imf::ChannelList();
     layers.channels().insert("Combined.R", Imf::Channel(Imf::HALF));
-    EXPECT_THAT(refusal(written(layers, {})), HasSubstr("but Combined.R"));
+    EXPECT_THAT(refusal(written(layers, {})), HasSubstr("it has Combined.R"));
 
     Imf::Header wide = header_of(sky, {});
     Imf::addChromaticities(wide, {{.7347f, .2653f}, {0, 1}, {.0001f, -.077f}, {.32168f, .33767f}});
     std::string note;
     decode_picture(written(wide, plane.buffer), "sky.exr", note);
-    EXPECT_THAT(note, HasSubstr("other primaries"));
+    EXPECT_THAT(note, HasSubstr("not Rec.709"));
 }
 
 struct Seed {

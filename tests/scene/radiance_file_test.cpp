@@ -92,7 +92,7 @@ TEST(RadianceFile, CutOffAnywhereItIsRefused) {
     for (const std::string& whole : {file_of("-Y 2 +X 3", six), file_of("-Y 1 +X 8", run)}) {
         EXPECT_NO_THROW(decoded(whole));
         for (size_t length = 0; length < whole.size(); ++length)
-            EXPECT_THAT(refusal_of(whole.substr(0, length)), HasSubstr("sky.hdr: the image is cut off")) << length;
+            EXPECT_THAT(refusal_of(whole.substr(0, length)), HasSubstr("sky.hdr: the image is truncated")) << length;
     }
 }
 
@@ -100,9 +100,9 @@ TEST(RadianceFile, NonsenseIsRefusedInOneLine) {
     EXPECT_THAT(refusal_of(file_of("-Y 2 +Y 3", six)), HasSubstr("is not a resolution such as"));
     EXPECT_THAT(refusal_of(file_of("-Y 0 +X 3", six)), HasSubstr("is not a resolution such as"));
     EXPECT_THAT(refusal_of(file_of("-Y 2 +X 99999999999", six)), HasSubstr("is not a resolution such as"));
-    EXPECT_THAT(refusal_of(file_of("-Y 1 +X 9", bytes_of({128, 0, 0, 129, 1, 1, 1, 9}))), HasSubstr("a run leaves"));
+    EXPECT_THAT(refusal_of(file_of("-Y 1 +X 9", bytes_of({128, 0, 0, 129, 1, 1, 1, 9}))), HasSubstr("a run exceeds"));
     EXPECT_THAT(refusal_of(file_of("-Y 1 +X 8", bytes_of({2, 2, 0, 8, 255, 1, 0, 0, 0, 0}))),
-                HasSubstr("a run leaves"));
+                HasSubstr("a run exceeds"));
     EXPECT_THAT(refusal_of(file_of("-Y 1 +X 1", six, "EXPOSURE=0\n")), HasSubstr("is not a factor above 0"));
     EXPECT_THAT(refusal_of(file_of("-Y 1 +X 1", six, "FORMAT=32-bit_rle_xyze\n")), HasSubstr("32-bit_rle_xyze"));
 }

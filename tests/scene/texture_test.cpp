@@ -32,7 +32,7 @@ TEST(Texture, ABlockLongerThanTheFileIsRefusedInALine) {
         std::string bytes = png_of({1, 1}, {{1, 2, 3, 255}});
         bytes[bytes.find("IDAT") - 4] = high;
         const std::string message = error_of([&] { decode_texture(bytes, "here"); }).what();
-        EXPECT_NE(message.find("the image is cut off"), message.npos) << message;
+        EXPECT_NE(message.find("the image is truncated"), message.npos) << message;
     }
 }
 

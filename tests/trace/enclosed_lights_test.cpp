@@ -53,8 +53,9 @@ size_t found(const Scene& scene) { return enclosed_lights(scene).size(); }
 TEST(EnclosedLights, ALampInABulbIsToldWithItsNames) {
     const std::vector<std::string> lines = enclosed_lights(lamp_in(ball(0.03f)));
     ASSERT_EQ(lines.size(), 1u);
-    EXPECT_EQ(lines[0], "light lamp is enclosed by the object \"Globe\": 100 % of its light ends within 0.03 m; to let "
-                        "it out, write {\"name\": \"Globe\", \"casts_shadows\": false} in \"objects\"");
+    EXPECT_EQ(lines[0],
+              "light lamp is enclosed by the object \"Globe\": 100 % of its light is blocked within 0.03 m; to "
+              "let it through, add {\"name\": \"Globe\", \"casts_shadows\": false} to \"objects\"");
     EXPECT_EQ(found(lamp_in(box_of(vec3(-0.05f), vec3(0.05f)))), 1u);
     EXPECT_EQ(found(lamp_in(ball(0.03f, 0, 20))), 1u) << "an open socket";
     EXPECT_EQ(found(lamp_in(ball(0.2f))), 1u) << "a large globe";

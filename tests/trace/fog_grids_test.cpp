@@ -101,7 +101,7 @@ TEST(FogGrids, TemperaturesOutOfRangeAreMendedAndSaid) {
     scene.media = {fire_source(scratch)};
     scene.media[0].temperature = GridSource{file_of(scratch, "odd", volume), {"odd"}, {}};
     const Snapshot snapshot = make_snapshot(scene, Moment{1, 0});
-    EXPECT_THAT(snapshot.notes, Contains(HasSubstr("odd.vdb: grid \"odd\": 1 voxels above 65504 set to it")));
+    EXPECT_THAT(snapshot.notes, Contains(HasSubstr("odd.vdb: grid \"odd\": 1 voxels above 65504 clamped to it")));
     for (const Medium& medium : snapshot.media) EXPECT_TRUE(is_finite(medium.optics.emission.radiance));
 }
 
@@ -114,7 +114,7 @@ TEST(FogGrids, AMissingGridIsOneLine) {
                            [&] {
                                make_snapshot(scene, Moment{1, 0});
                            }),
-                HasSubstr("has no grid \"heat\", it holds temperature (float)"));
+                HasSubstr("has no grid \"heat\"; it has temperature (float)"));
 }
 
 TEST(FogGrids, ARecipesFireGlowsAsItsFormulaSays) {

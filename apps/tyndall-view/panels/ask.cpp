@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-constexpr const char* title = "Before this closes";
+constexpr const char* title = "Before closing";
 
 // A scene without a scene file needs a file name first.
 void save_and_go(const ViewState& state, const EditMemory& memory, const Act& act) {
@@ -28,7 +28,7 @@ void draw_buttons(const ViewState& state, bool unsaved, bool ends_job, const Edi
         ImGui::PopStyleColor();
         ImGui::SameLine();
     }
-    if (ImGui::Button(unsaved ? "Discard" : ends_job ? "Stop it" : "Close", {width, 0}))
+    if (ImGui::Button(unsaved ? "Discard" : ends_job ? "Stop job" : "Close", {width, 0}))
         act({Verb::answer, {"discard"}, {}, {}});
     ImGui::SameLine();
     if (ImGui::Button("Cancel", {width, 0}) || ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false))
@@ -41,13 +41,13 @@ void draw_losses(const ViewState& state, bool unsaved, bool ends_job, EditMemory
     if (unsaved) ImGui::Text("%s has edits that are not saved.", name.c_str());
     if (unsaved && !state.session->has_file) {
         propose_name(state, memory);
-        ImGui::TextDisabled("There is no scene file yet; save it as");
+        ImGui::TextDisabled("No scene file yet; save as");
         ImGui::SetNextItemWidth(-1);
         if (ImGui::InputText("##file", &memory.file_name)) memory.file_exists = is_taken(memory.file_name);
     }
     if (ends_job) {
-        ImGui::Text("%s is not done: it ends with the window.", printable(state.job->name, 80).c_str());
-        ImGui::TextDisabled("Finished frames stay.");
+        ImGui::Text("%s is still running; closing the window stops it.", printable(state.job->name, 80).c_str());
+        ImGui::TextDisabled("Finished frames are kept.");
     }
 }
 }

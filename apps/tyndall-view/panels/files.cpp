@@ -12,7 +12,7 @@
 
 namespace tyndall {
 namespace {
-constexpr const char* one_at_a_time = "One job at a time: the one below has to end first";
+constexpr const char* one_at_a_time = "One job at a time: wait for the one below to end";
 
 // A file name field that follows what is shown until the user edits it.
 void draw_name(const char* label, const std::string& usual, FileField& field) {
@@ -59,7 +59,7 @@ void draw_picture_file(const ViewState& state, FilesMemory& memory, const Act& a
         memory.picture.edited = false;
     }
     tooltip("The whole image with " + std::to_string(state.settings.pixel.samples) +
-            " samples a pixel, as tyndall render writes it: .exr for light, .png for looking at");
+            " samples per pixel, as tyndall render writes it: .exr for linear light, .png for viewing");
 }
 
 std::vector<std::string> sequence_words(const FilesMemory& memory) {
@@ -68,7 +68,7 @@ std::vector<std::string> sequence_words(const FilesMemory& memory) {
 
 void draw_command(const FilesMemory& memory, const Act& act) {
     const bool pressed = ImGui::Button("Copy command");
-    tooltip("The command line that renders the same, for a shell or a farm");
+    tooltip("The command line that renders the same frames, for a shell or a farm");
     if (pressed) act({Verb::copy_command, sequence_words(memory), {}, {}});
 }
 
@@ -79,8 +79,8 @@ void draw_sequence(const ViewState& state, FilesMemory& memory, const Act& act) 
     ImGui::Checkbox("PNGs too", &memory.pngs);
     if (job_button("Render sequence", state,
                    "All frames with " + std::to_string(state.settings.pixel.samples) +
-                       " samples a pixel, as tyndall render does, while you go on; what is shown and edited now "
-                       "counts. Frames that are already there and right are kept"))
+                       " samples per pixel, as tyndall render does, in the background, with the view and the edits "
+                       "of this moment. Frames that exist and are up to date are skipped"))
         act({Verb::render, sequence_words(memory), {}, {}});
     ImGui::SameLine();
     draw_command(memory, act);
@@ -104,7 +104,7 @@ void draw_bake(const ViewState& state, FilesMemory& memory, const Act& act) {
     draw_range("##fog frames", *state.scene, memory.fog_frames);
     ImGui::SameLine();
     if (job_button("Bake fog", state,
-                   "\"" + memory.medium + "\" to VDB files, as tyndall bake makes them of its recipe"))
+                   "\"" + memory.medium + "\" to VDB files, as tyndall bake makes them from its recipe"))
         act({Verb::bake, {memory.medium, memory.fog.name, memory.fog_frames}, {}, {}});
 }
 }
@@ -140,6 +140,6 @@ void draw_job(const JobStatus& job, const Act& act) {
     ImGui::BeginDisabled(job.stopping);
     if (ImGui::Button("Stop##job", {button, 0})) act({Verb::stop_job, {}, {}, {}});
     ImGui::EndDisabled();
-    tooltip("Finished frames stay; asked for again, the job goes on after them");
+    tooltip("Finished frames are kept; the job resumes after them when started again");
 }
 }

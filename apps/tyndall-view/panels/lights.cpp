@@ -40,7 +40,7 @@ void draw_steps(const ViewState& state, const Act& act) {
     if (button("Undo", "ctrl + Z", session.done > 0)) act({Verb::undo, {}, {}, {}});
     if (button("Redo", "ctrl + shift + Z", session.done < session.steps.size())) act({Verb::redo, {}, {}, {}});
     const char* how = session.has_file ? "ctrl + S: write the edits into the scene file"
-                                       : "There is no scene file yet: save it under a name, below";
+                                       : "No scene file yet: save it under a name below";
     if (button("Save", how, unsaved && session.has_file)) act({Verb::save, {}, {}, {}});
     if (unsaved)
         ImGui::TextColored(accent, "not saved");
@@ -75,8 +75,8 @@ void draw_save_as(const ViewState& state, EditMemory& memory, const Act& act) {
     if (memory.file_exists) ImGui::PushStyleColor(ImGuiCol_Text, caution);
     const bool pressed = ImGui::Button(memory.file_exists ? "Replace" : "Save as", {width, 0});
     if (memory.file_exists) ImGui::PopStyleColor();
-    tip(memory.file_exists ? "There is such a file: write over it, and go on with that one"
-                           : "Write a scene file of this name, and go on with that one");
+    tip(memory.file_exists ? "This file exists: overwrite it and continue with it"
+                           : "Write a scene file with this name and continue with it");
     if (pressed) act({Verb::save_as, {memory.file_name}, {}, {}});
 }
 
@@ -126,7 +126,7 @@ void draw_list(const ViewState& state, const Act& act) {
                   act);
     }
     if (scene.media.empty()) ImGui::TextDisabled("none");
-    small_heading("Everything");
+    small_heading("Scene");
     draw_line(state, {Part::scene, 0}, "ambient, background, exposure", "", hue_of(scene.ambient.at(seconds)), act);
     for (const size_t i : own_cameras(scene))
         draw_line(state, {Part::camera, i}, scene.cameras[i].name, "camera",
@@ -139,10 +139,10 @@ void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {
     if (thing.index >= count_of(scene, thing.part)) return;
     ImGui::Dummy({0, 0.1f * ImGui::GetFontSize()});
     ImGui::Separator();
-    const std::string name = thing.part == Part::scene ? "Everything" : name_of(scene, thing.part, thing.index);
+    const std::string name = thing.part == Part::scene ? "Scene" : name_of(scene, thing.part, thing.index);
     ImGui::TextColored(accent, "%s", printable(name, 60).c_str());
     const std::vector<const Property*> properties = properties_of(scene, thing.part, thing.index);
-    if (properties.empty()) ImGui::TextDisabled("belongs to the glTF; nothing to change here");
+    if (properties.empty()) ImGui::TextDisabled("belongs to the glTF; it cannot be edited here");
     ImGui::PushID(place_of(scene, thing.part, thing.index).c_str());
     for (const Property* property : properties) {
         const bool sun = thing.part == Part::light && is_distant(scene.lights[thing.index]);

@@ -19,7 +19,6 @@ struct PanelResources {
     bool news_is_error = false;
     std::shared_ptr<const VolumePicture> volume; // newest; kept while the view moves
     void *texture = nullptr, *volume_texture = nullptr;
-    double seconds = 0; // since the last interface frame
 };
 
 // A file name: the default until the user edits it.

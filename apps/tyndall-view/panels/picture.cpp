@@ -198,7 +198,7 @@ void draw_wipe(const PicturePlace& place, const ViewState& state, const ShownPic
 void draw_names(const PicturePlace& place, const ViewState& state, const ShownPicture& picture) {
     const float type = ImGui::GetFontSize(), middle = 0.5f * (place.low.x + place.high.x);
     const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
-    const std::string wait = state.beside + (picture.quick ? ", once it stands still" : " ...");
+    const std::string wait = state.beside + (picture.quick ? ", when motion stops" : " ...");
     draw_band({place.low.x + 0.5f * type, place.low.y + 0.5f * type}, {{picture.mode, text}}, middle - place.low.x);
     draw_band({middle + 0.5f * type, place.low.y + 0.5f * type},
               {{picture.beside.empty() ? wait : picture.beside, picture.beside.empty() ? quiet : text}},
@@ -213,8 +213,7 @@ void draw_errors(const PicturePlace& place, float bottom, const ViewState& state
         if (wanted)
             draw_band(
                 {place.low.x + 0.5f * ImGui::GetFontSize(), bottom - 1.9f * ImGui::GetFontSize()},
-                {{picture.quick ? "the reference waits until things stand still" : "the reference is being made ...",
-                  quiet}},
+                {{picture.quick ? "the reference waits until motion stops" : "rendering the reference ...", quiet}},
                 place.high.x - place.low.x);
         return;
     }
@@ -238,7 +237,7 @@ ImVec4 severity_color(const std::vector<LimitationGroup>& limitations) {
 
 // "degraded: ambient light, and 1 more"
 std::string wrongs(const std::vector<LimitationGroup>& limitations) {
-    if (limitations.empty() || limitations[0].worst.severity == Severity::info) return "nothing known to be wrong";
+    if (limitations.empty() || limitations[0].worst.severity == Severity::info) return "no known limitations";
     const Severity severity = limitations[0].worst.severity;
     const auto alike =
         std::ranges::count(limitations, severity, [](const auto& group) { return group.worst.severity; });

@@ -16,7 +16,7 @@ constexpr double slow = 0.002;       // of a vector's slider range, per pixel of
 bool is_degrees(const Property& property) { return std::string_view(property.unit) == "degrees"; }
 
 std::string number_format(const Property& property, float value) {
-    if (!std::isfinite(value)) return "no end";
+    if (!std::isfinite(value)) return "unlimited";
     if (is_degrees(property)) return "%.3g\u00b0";
     return std::string("%.3g") + (*property.unit ? " " : "") + property.unit;
 }
@@ -86,7 +86,7 @@ void explain(const Property& property, const std::string& path, bool keyed) {
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(24 * ImGui::GetFontSize());
     ImGui::TextUnformatted(words_of(property).help);
-    if (keyed) ImGui::TextColored(accent, "Animated: a change sets a key at this moment.");
+    if (keyed) ImGui::TextColored(accent, "Animated: a change sets a key at this frame.");
     std::string more = path;
     if (*property.unit) more += std::string(", ") + property.unit;
     ImGui::TextDisabled("%s", more.c_str());
@@ -176,7 +176,7 @@ void draw_sun_place(const ViewState& state, size_t light, const EditMemory& memo
             act(action_of(*state.scene, {Part::light, light, "direction", direction_from(place), seconds},
                           drag_now(memory)));
     };
-    slider("elevation", "Of the sun above the horizon", place.height, -10, highest_sun);
-    slider("azimuth", "The side the sun stands on: 0 is +z, 90 is +x", place.bearing, 0, 360);
+    slider("elevation", "Height of the sun above the horizon", place.height, -10, highest_sun);
+    slider("azimuth", "Direction of the sun: 0 is +z, 90 is +x", place.bearing, 0, 360);
 }
 }

@@ -132,8 +132,8 @@ void draw_pointer(const Plot& plot, const RayStory& story, std::span<const size_
     for (size_t s = 0; s < story.steps.size(); ++s) {
         const RayStep& step = story.steps[s];
         if (distance < step.low || distance > step.high) continue;
-        std::string text =
-            formatted("%.3g m\nextinction %.3g /m\nto the eye %.1f %%", distance, step.extinction, 100 * step.to_eye);
+        std::string text = formatted("%.3g m\nextinction %.3g /m\ntransmittance to the camera %.1f %%", distance,
+                                     step.extinction, 100 * step.to_eye);
         for (const size_t l : lights)
             text += formatted("\n%s: %.1f %% through fog, adds %.3g nits/m", story.lights[l].name.c_str(),
                               100 * double(story.lights[l].at[s].transmittance),
@@ -169,8 +169,8 @@ void draw_curves(const RayStory& story, ImVec2 low, ImVec2 high) {
         return plot;
     };
     draw_fog(next("fog: extinction, 1/m"), story);
-    draw_transmittance(next("gets through: to the eye (white), from each light (colour)"), story, lights);
-    draw_light(next("light that arrives at the eye, nits per metre (grey: ambient and glow)"), story, lights);
+    draw_transmittance(next("transmittance: to the camera (white), from each light (color)"), story, lights);
+    draw_light(next("light that reaches the camera, nits per metre (grey: ambient and emission)"), story, lights);
     for (size_t l = 0; l < lights.size(); ++l, y += lit + 3) {
         const std::string name = shortened(story.lights[lights[l]].name, 4.8 * 12);
         draw_words({low.x, y}, ImGui::ColorConvertU32ToFloat4(light_colors[l]), name);
@@ -217,14 +217,14 @@ void draw_answer(const Answer& answer, const Answer* reference, const ViewState&
 
 void draw_answers(const ViewState& state, const RayAnswer& answer, const Act& act) {
     if (!ImGui::BeginTable("answers", 5, ImGuiTableFlags_SizingStretchProp)) return;
-    for (const char* head : {"technique", "fog, nits", "is off", "through", "valid"}) ImGui::TableSetupColumn(head);
+    for (const char* head : {"technique", "fog, nits", "error", "transmitted", "valid"}) ImGui::TableSetupColumn(head);
     ImGui::PushStyleColor(ImGuiCol_Text, quiet);
     ImGui::TableHeadersRow();
     ImGui::PopStyleColor();
     draw_answer(answer.story.reference, nullptr, state, act);
     for (const Answer& one : answer.story.answers) draw_answer(one, &answer.story.reference, state, act);
     ImGui::EndTable();
-    if (!answer.complete) ImGui::TextDisabled("asking every technique ...");
+    if (!answer.complete) ImGui::TextDisabled("evaluating every technique ...");
 }
 
 std::string headline(const RayAnswer& answer) {
@@ -232,18 +232,18 @@ std::string headline(const RayAnswer& answer) {
     std::string text =
         formatted("pixel %d, %d  \u00b7  frame %d  \u00b7  ", answer.pixel.x, answer.pixel.y, answer.frame);
     text += story.hits ? formatted("%.3g m to %s", story.end, story.surfaces.back().name.c_str())
-                       : std::string("into the background");
+                       : std::string("to the background");
     text += formatted("  \u00b7  optical depth %.3g", story.depth);
     const size_t reaching = reaching_lights(story).size();
     if (reaching < story.lights.size())
-        text += formatted("  \u00b7  %zu of %zu lights on it", reaching, story.lights.size());
+        text += formatted("  \u00b7  %zu of %zu lights reach it", reaching, story.lights.size());
     return text;
 }
 }
 
 void draw_ray(const ViewState& state, const RayAnswer* answer, const Act& act) {
     if (!answer || (state.explain && answer->pixel != *state.explain)) {
-        ImGui::TextDisabled("following the ray ...");
+        ImGui::TextDisabled("tracing the ray ...");
         return;
     }
     ImGui::TextUnformatted(headline(*answer).c_str());

@@ -33,7 +33,7 @@ void draw_modes(const ViewState& state, const Act& act) {
         ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
         ImGui::TextDisabled("%s", promise.c_str());
     }
-    labelled("beside it");
+    labelled("compare with");
     if (ImGui::BeginCombo("##beside", state.beside.empty() ? "nothing" : state.beside.c_str())) {
         if (ImGui::Selectable("nothing", state.beside.empty())) act({Verb::beside, {}, {}, {}});
         const std::string reference(reference_name);
@@ -44,9 +44,9 @@ void draw_modes(const ViewState& state, const Act& act) {
         ImGui::EndCombo();
     }
     if (!state.beside.empty()) {
-        labelled("arranged");
-        if (ImGui::BeginCombo("##arranged", state.shown.side_by_side ? "side by side" : "with a wipe")) {
-            if (ImGui::Selectable("with a wipe", !state.shown.side_by_side)) act({Verb::arrange, {"wipe"}, {}, {}});
+        labelled("layout");
+        if (ImGui::BeginCombo("##arranged", state.shown.side_by_side ? "side by side" : "wipe")) {
+            if (ImGui::Selectable("wipe", !state.shown.side_by_side)) act({Verb::arrange, {"wipe"}, {}, {}});
             if (ImGui::Selectable("side by side", state.shown.side_by_side)) act({Verb::arrange, {"side"}, {}, {}});
             ImGui::EndCombo();
         }
@@ -70,7 +70,7 @@ void draw_exposure(const ViewState& state, const Act& act) {
     ImGui::SetNextItemWidth(-button - ImGui::GetStyle().ItemSpacing.x);
     if (ImGui::DragFloat("##exposure", &exposure, 0.02f, -100, 100, "%+.1f EV"))
         act({Verb::exposure, {formatted("%.9g", exposure)}, {}, {}});
-    tooltip("Stops by which the image is brightened: drag, or ctrl + click to type. [ and ] are half a stop.");
+    tooltip("Exposure of the displayed image in stops: drag, or ctrl + click to type. [ and ] are half a stop.");
     ImGui::SameLine();
     ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(measured ? ImGuiCol_Header : ImGuiCol_Button));
     if (ImGui::Button("auto", {button, 0})) act({Verb::exposure, {"auto"}, {}, {}});
@@ -96,15 +96,15 @@ void draw_shown(const ViewState& state, const Act& act) {
                 act({Verb::view_transform, {name}, {}, {}});
         ImGui::EndCombo();
     }
-    tooltip("How what is brighter than a screen is shown: filmic (AgX) rolls it off, srgb cuts it off. Files in EXR "
-            "hold light as it is.");
+    tooltip("How values brighter than the display are shown: filmic (AgX) rolls them off, srgb clips them. EXR files "
+            "store linear light.");
 }
 
 void draw_looking_into(const ViewState& state, const Act& act) {
-    heading("Look into");
+    heading("Inspect");
     bool volume = state.volume_shown;
     if (ImGui::Checkbox("volume", &volume)) act({Verb::volume, {volume ? "on" : "off"}, {}, {}});
-    tooltip("density of the fog, slice by slice, and what is known of its grid");
+    tooltip("density of the fog, slice by slice, and facts about its grid");
     ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
     bool ray = state.explain.has_value();
     if (ImGui::Checkbox("ray", &ray) && state.scene) {
@@ -112,7 +112,7 @@ void draw_looking_into(const ViewState& state, const Act& act) {
         const std::vector<double> middle{0.5 * size.x, 0.5 * size.y};
         act({Verb::explain, {}, ray ? middle : std::vector<double>(), {}});
     }
-    tooltip("what happens on the ray of a pixel: shift + click on the image says which");
+    tooltip("what happens along the ray of a pixel: shift + click on the image chooses it");
 }
 
 void draw_cameras(const ViewState& state, const Act& act) {
@@ -140,7 +140,7 @@ void remark(const ImVec4& color, const std::string& where, const std::string& wh
 }
 
 void draw_remarks(const ViewState& state, const PanelResources& resources) {
-    if (!ImGui::CollapsingHeader("what it gets wrong", ImGuiTreeNodeFlags_DefaultOpen)) return;
+    if (!ImGui::CollapsingHeader("limitations", ImGuiTreeNodeFlags_DefaultOpen)) return;
     bool none = true;
     for (const LimitationGroup& group : resources.limitations) {
         const Severity severity = group.worst.severity;
@@ -153,10 +153,10 @@ void draw_remarks(const ViewState& state, const PanelResources& resources) {
     if (resources.picture) {
         for (const std::string& note : resources.picture->notes) remark(quiet, "note", note), none = false;
         if (resources.picture->non_finite)
-            remark(trouble, "not finite", std::to_string(resources.picture->non_finite) + " samples were left out"),
+            remark(trouble, "not finite", std::to_string(resources.picture->non_finite) + " samples were ignored"),
                 none = false;
     }
-    if (none) ImGui::TextDisabled("nothing known");
+    if (none) ImGui::TextDisabled("none known");
 }
 
 void draw_times(const PanelResources& resources) {
@@ -169,9 +169,9 @@ void draw_times(const PanelResources& resources) {
         ImGui::TextUnformatted(text.c_str());
     };
     row("scene", times.load), row("preparation", times.prepare), row("rays", times.render);
-    row("   of it all, fog", times.fog), row("display", times.tone);
+    row("   of which fog", times.fog), row("display", times.tone);
     ImGui::Separator();
-    row("picture", times.total());
+    row("image", times.total());
 }
 }
 

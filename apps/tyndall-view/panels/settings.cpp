@@ -56,10 +56,10 @@ void explain(const SettingRow& row, const std::string& usual) {
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(24 * ImGui::GetFontSize());
     ImGui::TextUnformatted(row.doc.c_str());
-    std::string more = row.name + ", usually " + usual;
+    std::string more = row.name + ", default " + usual;
     if (row.choices.empty() && row.parts == 1) more += formatted(", %g to %g %s", row.low, row.high, row.unit.c_str());
     ImGui::TextDisabled("%s", more.c_str());
-    ImGui::TextDisabled("double-click: back to usual; ctrl-click: type a value");
+    ImGui::TextDisabled("double-click: reset to default; ctrl-click: type a value");
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
 }

@@ -31,7 +31,7 @@ void draw_gaps(const ViewState& state, const Act& act) {
         const char *word, *doc;
     };
     constexpr Way ways[] = {{MissingFrame::error, "error", "missing frames: error"},
-                            {MissingFrame::hold, "hold", "missing frames: hold the one before"},
+                            {MissingFrame::hold, "hold", "missing frames: hold the previous one"},
                             {MissingFrame::skip, "skip", "missing frames: skip the fog"}};
     ImGui::SetNextItemWidth(5.5f * ImGui::GetFontSize());
     const Way& now = *std::ranges::find(ways, state.missing, &Way::missing);

@@ -113,7 +113,7 @@ void draw_facts(const VolumePicture& shown) {
 
 void draw_volume(const ViewState& state, const PanelResources& resources, const Act& act) {
     if (!resources.volume || !state.scene) {
-        ImGui::TextDisabled("looking at the fog ...");
+        ImGui::TextDisabled("sampling the fog ...");
         return;
     }
     const VolumePicture& shown = *resources.volume;

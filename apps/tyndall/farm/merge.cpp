@@ -36,7 +36,7 @@ std::vector<std::string> files_of(const Options& texts) {
     std::vector<std::string> files;
     for (const std::string& pattern : texts.parts) {
         if (has_frame_token(pattern) == texts.frames.empty())
-            fail(ExitCode::usage, "--frames", "goes with a name that has #### in it, and the other way round");
+            fail(ExitCode::usage, "--frames", "needs a name with ####, and such a name needs --frames");
         for (const int frame : texts.frames.empty() ? std::vector{0} : parse_frames(texts.frames))
             for (grouping.part = 1; grouping.part <= grouping.parts; ++grouping.part)
                 files.push_back(part_name(frame_name(pattern, frame), grouping));
@@ -113,7 +113,7 @@ struct Merge {
 
 void say_merged(const Merge& merge, int frame, const std::string& file, const MergedFrame& result,
                 const PartGroups& groups, size_t parts, double seconds) {
-    std::string noise = ", its noise is not known";
+    std::string noise = ", noise unknown";
     if (const auto error = result.stats.error())
         noise = formatted(", %s %.3g, at most %.3g", result.stats.is_noise_alone() ? "noise" : "error", error->error,
                           error->bound);
@@ -122,10 +122,10 @@ void say_merged(const Merge& merge, int frame, const std::string& file, const Me
     merge.say(formatted("frame %d from %s in ", frame, count_text(parts, "part").c_str()) + seconds_text(seconds) +
               " -> " + printable(file) + noise + formatted(", %d samples per pixel", result.stats.samples));
     if (groups.gap.empty()) return;
-    std::string line = formatted("frame %d is not complete: %s; %.3g of the samples are there", frame,
+    std::string line = formatted("frame %d is incomplete: %s; %.3g of the samples are present", frame,
                                  groups.gap.c_str(), groups.share);
     if (result.empty_pixels > 0)
-        line += ", and none of " + count_text(static_cast<uint64_t>(result.empty_pixels), "pixel");
+        line += ", and none for " + count_text(static_cast<uint64_t>(result.empty_pixels), "pixel");
     merge.say(line);
 }
 
@@ -149,8 +149,9 @@ int outcome(const Merge& merge) {
     const std::string scene = merge.plan.request.scene_file.string();
     if (merge.non_finite > 0)
         fail(ExitCode::non_finite, scene,
-             count_text(merge.non_finite, "sample") + " were not finite numbers and were left out");
-    if (merge.partial > 0) fail(ExitCode::differs, scene, "parts are missing of " + count_text(merge.partial, "frame"));
+             count_text(merge.non_finite, "sample") + " were not finite numbers and were ignored");
+    if (merge.partial > 0)
+        fail(ExitCode::differs, scene, "parts are missing for " + count_text(merge.partial, "frame"));
     if (merge.missed > 0)
         fail(ExitCode::differs, scene,
              formatted("all frames were written, but the error of %d of them may be larger than %g", merge.missed,
@@ -164,7 +165,7 @@ int outcome(const Merge& merge) {
     const auto &stray = *std::ranges::min_element(frames, {}, parts),
                &others = *std::ranges::max_element(frames, {}, parts);
     refuse(stray.second[0].file.string(),
-           formatted("is of frame %d, others are of frame %d: --output needs #### for several frames", stray.first,
+           formatted("belongs to frame %d, others to frame %d: --output needs #### for several frames", stray.first,
                      others.first));
 }
 
@@ -172,7 +173,7 @@ int run_merge(const Options& texts, const Globals& globals) {
     check_pattern(texts.output, ".exr", false);
     const double wait = texts.wait.empty() ? 0 : number_option("--wait", texts.wait, 0, 86400);
     const std::vector<std::string> names = found(files_of(texts), wait, !texts.partial);
-    if (names.empty()) fail(ExitCode::unreadable, texts.parts[0], "no such file, nor any other part");
+    if (names.empty()) fail(ExitCode::unreadable, texts.parts[0], "no such file, and no other part exists");
     std::map<int, std::vector<PartFile>> frames = read_parts(names);
     if (frames.size() > 1 && !has_frame_token(texts.output)) refuse_stray(frames);
     const PartFile& first = frames.begin()->second[0];
@@ -201,30 +202,29 @@ int run_merge(const Options& texts, const Globals& globals) {
 }
 
 Run add_merge(const Command& program) {
-    const Command command = program.command("merge", "put the parts of frames together, to the bits of one run");
+    const Command command = program.command("merge", "merge the parts of frames, bit-identical to a single run");
     auto texts = std::make_shared<Options>();
     command.options("PARTS", texts->parts, "EXR parts that tyndall render --plan ... --part i/N wrote", "").required();
     command.option("-o,--output", texts->output, "files to write; #### stands for the frame number", "out.####.exr")
         .required();
-    command.option("--parts", texts->count, "how many parts a frame has: PARTS are then names that render -o was given",
-                   "N");
-    command.option("--frames", texts->frames, "with --parts: the frames whose parts are meant, where names have ####",
-                   "RANGE");
-    command.option("--plan", texts->plan, "the plan, where it is not where the parts were rendered by it", "FILE");
+    command.option("--parts", texts->count, "parts per frame; PARTS are then the names that render -o was given", "N");
+    command.option("--frames", texts->frames, "with --parts: the frames to merge, where names have ####", "RANGE");
+    command.option("--plan", texts->plan, "the plan, if it has moved since the parts were rendered", "FILE");
     command.option("--wait", texts->wait,
-                   "wait for parts that are named and not there yet, so many seconds at most: a\n"
+                   "wait at most this many seconds for named parts that do not exist yet: a\n"
                    "shared file system may show new files late (default: 0)",
                    "SECONDS");
     command.flag("--partial", texts->partial,
-                 "merge the parts that are there, where some are missing: with more noise, and\n"
-                 "exit code 1");
+                 "merge the existing parts even if some are missing: more noise, and exit\n"
+                 "code 1");
     command.flag("--remove-parts", texts->remove,
                  "remove the parts of a frame once it is written and\nmeets its target");
-    command.footer("Example: tyndall merge out/window.0001.part-*.exr -o out/window.0001.exr\n"
-                   "Frames with all their parts: tyndall merge out/window.####.exr --parts 8 --frames 1-24 -o "
-                   "out/window.####.exr\n"
-                   "Every sample has to be there exactly once: parts that are missing, doubled, damaged or of other\n"
-                   "inputs end it with exit code 3 and the name of the file, and nothing is written.");
+    command.footer(
+        "Example: tyndall merge out/window.0001.part-*.exr -o out/window.0001.exr\n"
+        "Frames with all their parts: tyndall merge out/window.####.exr --parts 8 --frames 1-24 -o "
+        "out/window.####.exr\n"
+        "Every sample must be present exactly once: a part that is missing, duplicate, damaged or made from\n"
+        "other inputs ends it with exit code 3 and the name of the file, and nothing is written.");
     return [texts](const Globals& globals) { return run_merge(*texts, globals); };
 }
 }

@@ -112,7 +112,7 @@ int run_prepare(const Options& texts, const Globals& globals) {
         print_report(json_line(
             {{"plan", texts.plan}, {"folder", folder->folder.string()}, {"bytes", bytes}, {"frames", reports}}));
     if (globals.quiet) return 0;
-    if (no_room) say("note: --cache-size leaves no room for some of it: parts make that anew");
+    if (no_room) say("note: --cache-size leaves no room for some of it: each part recomputes that");
     say(count_text(frames.size(), "frame") + " prepared in " + seconds_text(steady_seconds() - start) + ": " +
         bytes_text(bytes) + " in " + printable(folder->folder.string()));
     return 0;
@@ -120,17 +120,17 @@ int run_prepare(const Options& texts, const Globals& globals) {
 }
 
 Run add_prepare(const Command& program) {
-    const Command command = program.command("prepare", "make once what all parts of a planned frame share");
+    const Command command = program.command("prepare", "compute once what all parts of a planned frame share");
     auto texts = std::make_shared<Options>();
     command.option("--plan", texts->plan, "a plan that tyndall plan --save wrote", "FILE").required();
-    command.option("--frames", texts->frames, "some of the plan's frames (default: all)", "RANGE");
+    command.option("--frames", texts->frames, "frames of the plan to prepare (default: all)", "RANGE");
     command.option("--cache-size", texts->size,
-                   "how much the folder may hold (default: 32); what does not fit\nis made by each part", "GB");
+                   "size limit of the folder (default: 32); what does not fit\nis recomputed by each part", "GB");
     command.flag("--clean", texts->clean, "remove what no frame of the plan needs, and prepare nothing");
     command.flag("--clean-all", texts->clean_all, "remove all that was prepared, and prepare nothing");
     command.footer("Example: tyndall prepare --plan out/window.plan.json\n"
-                   "Fog ready to be sampled, grids of light and what else takes long lie in files beside the plan\n"
-                   "(out/window.plan.cache); tyndall render --plan finds them by itself. The bits stay the same.");
+                   "Fog ready for sampling, light grids and other slow results are stored beside the plan\n"
+                   "(out/window.plan.cache); tyndall render --plan finds them by itself. Images stay bit-identical.");
     return [texts](const Globals& globals) { return run_prepare(*texts, globals); };
 }
 }

@@ -68,7 +68,8 @@ std::string status_text(const FarmJob& job, const FarmStatus& status, const Coun
     if (!counts.unfinished.empty())
         text += "missing: frames " + printable(format_frames(counts.unfinished), 300) + ", of which " +
                 count_text(counts.missing_parts, "part") + " are not rendered\n";
-    if (status.checkpoints > 0) text += "begun: " + count_text(status.checkpoints, "part") + ", by checkpoints\n";
+    if (status.checkpoints > 0)
+        text += "started: " + count_text(status.checkpoints, "part") + ", according to checkpoints\n";
     if (status.temporaries > 0)
         text += "temporary: " + count_text(status.temporaries, "file") + ", being written or left by killed tasks\n";
     if (!status.suspects.empty())
@@ -76,9 +77,9 @@ std::string status_text(const FarmJob& job, const FarmStatus& status, const Coun
                     return printable(file.file, 200) + ": " + printable(file.why, 200);
                 });
     if (!commands.empty() && job.engine == "slurm")
-        text += "to hand over what is missing:\n  bash " + quoted_for_shell((job.folder / "submit.sh").string()) + "\n";
+        text += "to submit what is missing:\n  bash " + quoted_for_shell((job.folder / "submit.sh").string()) + "\n";
     if (!commands.empty())
-        text += "to render what is missing here:\n" +
+        text += "to render what is missing on this machine:\n" +
                 some_lines(commands, [](const std::string& command) { return printable(command, 2000); });
     return text;
 }
@@ -104,17 +105,17 @@ int run_status(const Options& texts, const Globals& globals) {
 }
 
 Run add_status(const Command& program) {
-    const Command command = program.command("status", "what of a farm's job is finished, and how to make the rest");
+    const Command command = program.command("status", "what a farm job has finished, and how to render the rest");
     auto texts = std::make_shared<Options>();
     command.option("FOLDER", texts->folder, "folder that tyndall submit wrote", "").required();
-    command.flag("--verify", texts->verify, "read every byte of every file; otherwise names, sizes and headers");
+    command.flag("--verify", texts->verify, "read every byte of every file (default: names, sizes and headers)");
     command.option("--tasks", texts->tasks,
-                   "only the numbers of the tasks of a step that are not done, as arrays for\n"
-                   "submit.sh: plan, parts or merge",
+                   "print only the unfinished task numbers of a step, as arrays for submit.sh:\n"
+                   "plan, prepare, parts or merge",
                    "STEP");
     command.footer("Example: tyndall status out/window\n"
                    "Frames whose parts were removed count as finished. Exit code 0: all frames are finished; 1: some\n"
-                   "are not, and the commands that make them are printed.");
+                   "are not, and the commands that render them are printed.");
     return [texts](const Globals& globals) { return run_status(*texts, globals); };
 }
 }

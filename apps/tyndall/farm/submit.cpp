@@ -58,7 +58,7 @@ FarmJob job_of(const Options& texts, const Scene& scene) {
     if (!texts.groups.empty()) job.plan_options.insert(job.plan_options.end(), {"--groups", texts.groups});
     job.remove_parts = texts.remove_parts;
     if (job.plan_for_each_frame && job.chunk > 1)
-        fail(ExitCode::usage, "--chunk", "with an error that is wanted each frame has a plan, and a task, of its own");
+        fail(ExitCode::usage, "--chunk", "with --target-error or --mode auto, each frame has its own plan and task");
     return job;
 }
 
@@ -96,7 +96,7 @@ void run(std::vector<std::string> words) {
     if (status != 0)
         fail(ExitCode::differs, words[0],
              WIFEXITED(status) ? formatted("ended with exit code %d; the job's files are written", WEXITSTATUS(status))
-                               : formatted("was ended by signal %d; the job's files are written", WTERMSIG(status)));
+                               : formatted("was killed by signal %d; the job's files are written", WTERMSIG(status)));
 }
 
 // The same job may be written again. Throws Error when the folder holds another job.
@@ -105,7 +105,7 @@ void check_folder(const FarmJob& job) {
     std::error_code ignored;
     if (std::filesystem::exists(file, ignored) && read_file(file) != job_text(job))
         fail(ExitCode::usage, "--output",
-             printable(job.folder.string(), 200) + " holds another job: name another folder");
+             printable(job.folder.string(), 200) + " contains another job: use another folder");
 }
 
 // Checks that the saved plan can be split into this many parts before the job is handed over; removes it if not.
@@ -160,7 +160,7 @@ void say_dry(const FarmJob& job, const FarmFiles& files) {
     for (const char* step : {"plan", "parts", "merge"})
         if (const std::string arrays = arrays_of_new(job, step); !arrays.empty())
             report += formatted("--- tasks of %s: FIRST and --array\n", step) + arrays + "\n";
-    print_report(report + "--- to hand it over\n" + shell_text(run_words(job)) + "\n");
+    print_report(report + "--- to submit it\n" + shell_text(run_words(job)) + "\n");
 }
 
 std::string forecast_text(const TaskForecast& forecast) {
@@ -171,7 +171,7 @@ std::string forecast_text(const TaskForecast& forecast) {
 
 int run_submit(const Options& texts, const Globals& globals) {
     choice_among("ENGINE", texts.engine, {"slurm", "openjd"});
-    if (texts.dry_run && texts.run) fail(ExitCode::usage, "--run", "does not go with --dry-run");
+    if (texts.dry_run && texts.run) fail(ExitCode::usage, "--run", "cannot be combined with --dry-run");
     check_for_plan(texts.render, texts.groups);
     const Mode& mode = texts.render.mode == automatic ? main_mode() : find_mode(texts.render.mode, "--mode");
     RenderRequest request = make_request(texts.render, mode);
@@ -190,7 +190,7 @@ int run_submit(const Options& texts, const Globals& globals) {
     if (!globals.quiet) {
         say(printable(job.folder.string(), 300) + ": " + count_text(job.frames.size(), "frame") + " in " +
             count_text(static_cast<uint64_t>(job.parts), "part") + ", " + job.engine + "; " + forecast_text(forecast));
-        say((texts.run ? "runs: " : "to hand it over: ") + printable(shell_text(run_words(job)), 400));
+        say((texts.run ? "running: " : "to submit it: ") + printable(shell_text(run_words(job)), 400));
     }
     if (texts.run) run(run_words(job));
     return 0;
@@ -198,7 +198,7 @@ int run_submit(const Options& texts, const Globals& globals) {
 }
 
 Run add_submit(const Command& program) {
-    const Command command = program.command("submit", "write a job for a render farm, and hand it over with --run");
+    const Command command = program.command("submit", "write a job for a render farm, and submit it with --run");
     auto texts = std::make_shared<Options>();
     RenderOptions& render = texts->render;
     render.output = "frames.####.exr"; // for the checks of a plan; files go to the folder
@@ -208,25 +208,25 @@ Run add_submit(const Command& program) {
         .required();
     command.option("-o,--output", texts->folder, "folder of the job: scripts, plan, parts, frames, logs", "FOLDER")
         .required();
-    command.option("--parts", texts->parts, "parts of each frame (default: 1)", "N");
-    command.option("--chunk", texts->chunk, "frames of a task (default: 1)", "N");
-    command.option("--cpus", texts->cpus, "processors of a task (default: the engine's)", "N");
-    command.option("--memory", texts->memory, "most memory of a task, MiB (default: by a forecast)", "N");
+    command.option("--parts", texts->parts, "parts per frame (default: 1)", "N");
+    command.option("--chunk", texts->chunk, "frames per task (default: 1)", "N");
+    command.option("--cpus", texts->cpus, "processors per task (default: the engine's)", "N");
+    command.option("--memory", texts->memory, "memory limit per task, MiB (default: from a forecast)", "N");
     command.option("--minutes", texts->minutes,
-                   "most time of a task, for Slurm (default: by a forecast; with an error that is\n"
-                   "wanted the partition's)",
+                   "time limit per task, for Slurm (default: from a forecast; with --target-error\n"
+                   "the partition's)",
                    "N");
     command.flag("--remove-parts", texts->remove_parts, "remove the parts of a frame once it is merged");
     command.flag("--dry-run", texts->dry_run, "print what would be written, and write nothing");
-    command.flag("--run", texts->run, "hand the job over: by sbatch, or to openjd run on this machine");
-    command.option("--mode", render.mode, "rendering technique (default: march), or auto: found for each frame",
+    command.flag("--run", texts->run, "submit the job: with sbatch, or with openjd run on this machine");
+    command.option("--mode", render.mode, "rendering technique (default: march), or auto: chosen for each frame",
                    "NAME");
     add_groups_option(command, texts->groups);
     add_planned_options(command, render);
     command.footer(
         "Example: tyndall submit slurm scenes/window.json --frames 1-24 --parts 3 --samples 64 -o out/window\n"
         "With --target-error, or --mode auto, tasks make a plan for each frame first. tyndall status FOLDER\n"
-        "tells what is finished, and how to render what is not.");
+        "shows what is finished, and how to render what is not.");
     return [texts](const Globals& globals) { return run_submit(*texts, globals); };
 }
 }

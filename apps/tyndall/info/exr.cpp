@@ -64,7 +64,7 @@ std::string exr_report(const std::filesystem::path& file, bool json) {
     std::string text = formatted("%s: OpenEXR, %d x %d pixels, %s compression\n", printable(file.string()).c_str(),
                                  exr.display.x, exr.display.y, printable(exr.compression, 40).c_str());
     if (exr.low != ivec2(0) || exr.size != exr.display)
-        text += formatted("  pixels %d,%d to %d,%d are there\n", exr.low.x, exr.low.y, exr.low.x + exr.size.x,
+        text += formatted("  contains the pixels %d,%d to %d,%d\n", exr.low.x, exr.low.y, exr.low.x + exr.size.x,
                           exr.low.y + exr.size.y);
     text += lines;
     for (const auto& [name, value] : exr.attributes)

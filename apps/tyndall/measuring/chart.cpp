@@ -72,18 +72,18 @@ void write_reports(const Chart& chart) {
 
 void say_end(const Chart& chart) {
     std::string line = count_text(chart.points.size(), "point") + " in " + seconds_text(chart.seconds);
-    if (chart.kept > 0) line += formatted(", %d kept from before", chart.kept);
-    if (!chart.left_out.empty()) line += formatted(", %zu left out", chart.left_out.size());
+    if (chart.kept > 0) line += formatted(", %d kept from an earlier run", chart.kept);
+    if (!chart.left_out.empty()) line += formatted(", %zu skipped", chart.left_out.size());
     say(line);
     if (was_loaded(chart))
-        say(formatted("note: other work was running (load %.1f on %d threads): times are longer than they need be",
+        say(formatted("note: other processes were running (load %.1f on %d threads), so times are too long",
                       chart.load_before, chart.threads));
-    say("look: " + printable((chart.job.directory / "chart.html").string()));
+    say("to view: " + printable((chart.job.directory / "chart.html").string()));
 }
 
 int run_chart(const Options& texts, const Globals& globals) {
     ChartJob job = make_job(texts);
-    set_stop_remark("; what is measured is kept, the same command continues");
+    set_stop_remark("; measured points are kept, the same command continues");
     OutputPlaces places;
     check_places(job, places);
     const Scene scene = load_scene(job.render.scene_file);
@@ -104,7 +104,7 @@ int run_chart(const Options& texts, const Globals& globals) {
     const auto broken = std::ranges::find_if(chart.points, [](const ChartPoint& p) { return p.non_finite > 0; });
     if (broken != chart.points.end())
         fail(ExitCode::non_finite, scene.file.string(),
-             point_name(*broken) + " met samples that were not finite numbers");
+             point_name(*broken) + " had samples that were not finite numbers");
     return 0;
 }
 }
@@ -118,7 +118,7 @@ Run add_chart(const Command& program) {
         .option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html, drawings and\nimages",
                 "DIR")
         .required();
-    command.option("--modes", texts->modes, "modes by name, with commas between (default: all)", "NAMES");
+    command.option("--modes", texts->modes, "modes by name, comma-separated (default: all)", "NAMES");
     command.flag("--quick", texts->quick, "small images, without the settings that take longest: under a minute");
     command.option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
     command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
@@ -128,22 +128,23 @@ Run add_chart(const Command& program) {
                    "render the reference until its noise is this share of the mean\n(default: 0.02; 0.05 with --quick)",
                    "SHARE");
     command.option("--reference-seconds", texts->reference_seconds,
-                   "at most so long for each of its two halves (default: 60; 4 with\n--quick)", "SECONDS");
+                   "time limit for each of its two halves (default: 60; 4 with\n--quick)", "SECONDS");
     command.option("--samples", texts->samples, "rays per pixel of the reference instead, 4 or more", "N");
-    command.option("--runs", texts->runs, "times each image is rendered at least (default: 3; 2 with --quick)", "N");
+    command.option("--runs", texts->runs,
+                   "how many times each image is rendered, at least (default: 3; 2 with --quick)", "N");
     command.option("--longest", texts->longest,
-                   "leave out settings whose image would take more seconds than this\n"
+                   "skip settings whose image would take more seconds than this\n"
                    "(default: 60; 0.7 with --quick)",
                    "SECONDS");
     command.options("--set", texts->settings,
                     "one setting for all modes, for instance terms.ambient=off; may be\n"
-                    "repeated. What makes a mode quicker or more careful is the chart's own",
+                    "repeated. Those that trade speed for accuracy are set by the chart itself",
                     "NAME=VALUE");
-    command.footer("Example: a first look, then the whole story\n"
+    command.footer("Example: a quick look, then the full chart\n"
                    "  tyndall chart scenes/window.json -o out/chart --quick\n"
                    "  tyndall chart scenes/window.json -o out/chart\n"
-                   "Each mode is rendered at six settings or more, each several times, and held against exact single\n"
-                   "scattering. Points are kept as they are measured: a run that was stopped goes on where it was.");
+                   "Each mode is rendered at six settings or more, each several times, and compared with exact single\n"
+                   "scattering. Points are saved as they are measured: a stopped run resumes where it was.");
     return [texts](const Globals& globals) { return run_chart(*texts, globals); };
 }
 }

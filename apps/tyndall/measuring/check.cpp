@@ -227,17 +227,17 @@ int run_check(const Options& texts, const Globals& globals) {
 }
 
 Run add_check(const Command& program) {
-    const Command command = program.command("check", "find what is wrong with scenes, recipes, volumes and images");
+    const Command command = program.command("check", "find problems in scenes, recipes, volumes and images");
     auto texts = std::make_shared<Options>();
     command
         .options("FILES", texts->files,
                  "files (.json .gltf .glb .vdb .nvdb .exr); a name with #### is a whole sequence", "")
         .required();
     command.option("--frames", texts->frames,
-                   "frames a sequence should have (default: from the first that is there to the last)", "RANGE");
+                   "frames a sequence should have (default: from the first found to the last)", "RANGE");
     command.footer("Example: before a long render\n"
                    "  tyndall check scenes/window.json 'fog/dust.####.vdb'\n"
-                   "After one: are all frames there, and whole?\n"
+                   "After one: are all frames present and complete?\n"
                    "  tyndall check 'out/shot.####.exr' --frames 1-24\n"
                    "Each problem is one line on stdout: FILE: FIELD: TEXT. Volumes and images are read whole.\n"
                    "Exit code 0: no problem; 1: problems, warnings too; 4: the only problems are files that are\n"

@@ -39,7 +39,8 @@ struct Job {
 std::vector<Pair> make_pairs(const Options& texts) {
     const bool sequence = has_frame_token(texts.test);
     if (!sequence && has_frame_token(texts.reference))
-        fail(ExitCode::usage, texts.test, "one image against a sequence: give one reference");
+        fail(ExitCode::usage, texts.test,
+             "this is one image, but the reference is a sequence: give one reference image");
     if (!sequence && !texts.frames.empty())
         fail(ExitCode::usage, "--frames",
              "is for sequences, like a.####.exr; " + printable(texts.test) + " is one file");
@@ -58,12 +59,11 @@ Job make_job(const Options& texts, OutputPlaces& places) {
     for (const std::string& text : texts.fail_above) {
         job.bounds.push_back(parsed_bound(text));
         if (job.bounds.back().metric->name == "flicker" && job.pairs.size() < 2)
-            fail(ExitCode::usage, "--fail-above", "flicker needs a sequence of two frames at least");
+            fail(ExitCode::usage, "--fail-above", "flicker needs a sequence of at least two frames");
     }
     if (!texts.pixels_per_degree.empty())
         job.pixels_per_degree = number_option("--ppd", texts.pixels_per_degree, 1, 1000);
-    if (!texts.map.empty() && texts.heatmap.empty())
-        fail(ExitCode::usage, "--map", "says what a heat map shows: add --heatmap FILE.png");
+    if (!texts.map.empty() && texts.heatmap.empty()) fail(ExitCode::usage, "--map", "needs --heatmap FILE.png");
     if (!texts.map.empty()) job.map = choice_among("--map", texts.map, {"error", "flip"});
     job.heatmap = texts.heatmap;
     if (job.heatmap.empty()) return job;
@@ -116,7 +116,7 @@ CompareResult compare_all(const Job& job, Progress* progress) {
         const Picture& reference = references.read(pair.reference);
         check_same_frame(test, reference);
         if (!result.frames.empty() && test.beauty.size != result.size)
-            refuse(pair.test, "the earlier frames have another size");
+            refuse(pair.test, "its size differs from the earlier frames");
         result.size = test.beauty.size;
 
         Image<float> map;
@@ -141,7 +141,8 @@ std::vector<Exceeded> find_exceeded(const CompareResult& result, const std::vect
     std::vector<Exceeded> exceeded;
     for (const Bound& bound : bounds) {
         const auto value = bound.metric->value(result);
-        if (!value) fail(ExitCode::usage, "--fail-above", bound.metric->name + " is not there: " + bound.metric->doc);
+        if (!value)
+            fail(ExitCode::usage, "--fail-above", bound.metric->name + " is not available: " + bound.metric->doc);
         const double size =
             bound.metric->name.starts_with("bias_rel") || bound.metric->name == "bias" ? std::abs(*value) : *value;
         if (!(size <= bound.limit)) exceeded.push_back({bound.metric->name, *value, bound.limit});
@@ -177,7 +178,7 @@ int run_compare(const Options& texts, const Globals& globals) {
     const uint64_t bad = result.overall.non_finite();
     if (bad == 0) return 0;
     fail(ExitCode::non_finite, printable(texts.test) + " against " + printable(texts.reference),
-         count_text(bad, "pixel") + " of images and layers not finite; the rest was compared");
+         count_text(bad, "pixel") + " of images and layers are not finite; the rest was compared");
 }
 
 std::string metric_help() {
@@ -199,22 +200,21 @@ Run add_compare(const Command& program) {
                     "VALUE; may be repeated",
                     "METRIC=VALUE");
     command.option("--heatmap", texts->heatmap,
-                   "an image of where the differences are; the strip below it is the\n"
+                   "an image that shows where the differences are; the strip below it is the\n"
                    "scale",
                    "FILE.png");
     command.option("--map", texts->map,
                    "what the heat map shows: error (default), 0.001 to 10 times the\n"
                    "reference's mean on a logarithmic scale; or flip, 0 to 1",
                    "WHAT");
-    command.option("--ppd", texts->pixels_per_degree, "pixels per degree of the viewer's eye, for FLIP (default 67)",
-                   "N");
+    command.option("--ppd", texts->pixels_per_degree, "pixels per degree of visual angle, for FLIP (default: 67)", "N");
     command.footer(
         "Example: is the quick render within 5 % of the good one?\n"
         "  tyndall compare quick.exr good.exr --heatmap where.png --fail-above rmse_rel=0.05\n"
         "  tyndall compare 'quick.####.exr' 'good.####.exr' --frames 1-24 --json\n"
-        "Both have to show the same pixels: same size, same crop. Layers both files have (inscatter,\n"
+        "Both must show the same pixels: same size, same crop. Layers both files have (inscatter,\n"
         "transmittance, lights) are compared too, Z is not. Pixels that are not finite numbers are counted and\n"
-        "left out. Against a black reference relative values are 0 or infinite; JSON has null for infinite or\n"
+        "ignored. Against a black reference relative values are 0 or infinite; JSON has null for infinite or\n"
         "undefined.\n" +
         metric_help() +
         "Exit code 0: compared; 1: a metric is above its limit (or undefined); 3: the images cannot be\n"

@@ -69,10 +69,10 @@ std::string layers_table(const CompareResult& result) {
                           percent(e.rmse, e.mean_reference).c_str(), percent(e.bias, e.mean_reference).c_str(),
                           e.mean_reference);
         if (const uint64_t bad = e.non_finite_test + e.non_finite_reference)
-            text += "  " + count_text(bad, "pixel") + " left out, not finite";
+            text += "  " + count_text(bad, "pixel") + " ignored, not finite";
         text += "\n";
     };
-    row("picture", all.beauty);
+    row("image", all.beauty);
     for (const auto& [name, errors] : all.layers) row(name, errors);
     return text;
 }
@@ -93,7 +93,8 @@ std::string compare_text(const CompareResult& result) {
     std::string text = printable(result.test) + " against " + printable(result.reference) +
                        formatted(": %d x %d pixels", result.size.x, result.size.y);
     text += result.sequence ? ", " + count_text(result.frames.size(), "frame") + "\n" : std::string("\n");
-    if (all.stylised) text += "stylised: made with artist's controls, so these are differences of looks, not errors\n";
+    if (all.stylised)
+        text += "stylised: rendered with artistic controls, so these are differences of look, not errors\n";
     text += errors_table(all.beauty);
     text += formatted("\n  %-16s %12.4g   without the largest 0.1 %%: %.4g\n", "relMSE", all.beauty.rel_mse,
                       all.beauty.rel_mse_trimmed);
@@ -102,8 +103,8 @@ std::string compare_text(const CompareResult& result) {
                       result.viewing.pixels_per_degree);
     text += formatted("  %-16s %12.6f   as stored, clamped to 0..1\n", "LDR-FLIP", all.flip_ldr);
     if (all.noise)
-        text += formatted("  %-16s %12.4g   %s: what of rmse is the image's own noise\n", "standard error", *all.noise,
-                          percent(*all.noise, all.beauty.mean_reference).c_str());
+        text += formatted("  %-16s %12.4g   %s: the part of rmse that is the image's own noise\n", "standard error",
+                          *all.noise, percent(*all.noise, all.beauty.mean_reference).c_str());
     if (result.frames.size() > 1)
         text += formatted("  %-16s %12.4g   of the reference's mean\n", "flicker", result.flicker);
     if (all.mse)

@@ -66,7 +66,7 @@ void keep_inputs(const Options& texts, const Scene& scene) {
         for (const InputFile& input : scene.inputs)
             if (!output.empty() &&
                 std::filesystem::weakly_canonical(output) == std::filesystem::weakly_canonical(input.path))
-                fail(ExitCode::usage, output, "this file belongs to the scene and would be written over");
+                fail(ExitCode::usage, output, "this file belongs to the scene and would be overwritten");
 }
 
 int run_explain(const Options& texts, const Globals& globals) {
@@ -108,35 +108,35 @@ int run_explain(const Options& texts, const Globals& globals) {
     print_report(globals.json ? explain_json(story, title) : explain_text(story, title));
     const auto finite = [](const Answer& answer) { return answer.finite; };
     if (story.reference.finite && std::ranges::all_of(story.answers, finite)) return 0;
-    fail(ExitCode::non_finite, texts.scene, "an answer is not a finite number; the report says which");
+    fail(ExitCode::non_finite, texts.scene, "a result is not a finite number; the report shows which");
 }
 }
 
 Run add_explain(const Command& program) {
-    const Command command = program.command("explain", "say what happens along one camera ray");
+    const Command command = program.command("explain", "show what happens along one camera ray");
     auto texts = std::make_shared<Options>();
     command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
         .required();
-    command.option("--pixel", texts->pixel, "the pixel whose centre the ray goes through; 0,0 is the upper left", "X,Y")
+    command.option("--pixel", texts->pixel, "the pixel whose center the ray goes through; 0,0 is the upper left", "X,Y")
         .required();
     command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
     command.option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
-    command.option("--res", texts->resolution, "size of the image the pixel is counted in (default: the scene's)",
-                   "WxH");
-    command.option("--quality", texts->quality, "of the modes: draft, preview (default), final or reference", "NAME");
+    command.option("--res", texts->resolution, "image size that --pixel refers to (default: the scene's)", "WxH");
+    command.option("--quality", texts->quality, "quality of the modes: draft, preview (default), final or reference",
+                   "NAME");
     command.options("--set", texts->settings,
                     "one setting by name, like froxel.tile=4; may be repeated\n"
                     "(tyndall modes lists them)",
                     "NAME=VALUE");
-    command.option("--modes", texts->modes, "the modes to ask, with commas between (default: all); or none", "NAMES");
-    command.option("--svg", texts->svg, "a drawing of it", "FILE.svg");
-    command.option("--csv", texts->csv, "a table of every step along the ray", "FILE.csv");
+    command.option("--modes", texts->modes, "modes to compare, comma-separated (default: all), or none", "NAMES");
+    command.option("--svg", texts->svg, "also write a drawing of the ray", "FILE.svg");
+    command.option("--csv", texts->csv, "also write a table of every step along the ray", "FILE.csv");
     command.footer(
-        "Example: why is this pixel of the window so bright, and who gets it right?\n"
+        "Example: why is this pixel of the window so bright, and which modes get it right?\n"
         "  tyndall explain scenes/window.json --pixel 320,180 --svg ray.svg\n"
-        "The report: what the ray meets, how much fog lies on it, where each light shines on it and what keeps\n"
-        "it out, how much of that arrives at the eye; then the fog light by every mode, at the pixel's centre\n"
-        "and one sample, beside exact single scattering. --json has all of it.");
+        "The report: what the ray hits, how much fog lies on it, where each light reaches it and what blocks\n"
+        "the light, how much of it arrives at the camera; then the fog light of every mode, at the pixel's center\n"
+        "with one sample, beside exact single scattering. --json has all of it.");
     return [texts](const Globals& globals) { return run_explain(*texts, globals); };
 }
 }

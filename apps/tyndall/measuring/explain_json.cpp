@@ -31,9 +31,8 @@ Json light_at_json(const LightAtStep& at) {
 }
 
 Json light_json(const LightOnRay& light) {
-    constexpr const char* kinds[] = {"point", "spot", "sun"};
     return json_object({{"name", light.name},
-                        {"type", kinds[static_cast<size_t>(light.kind)]},
+                        {"type", traits_of(light.kind).name},
                         {"shadows", light.shadows},
                         {"points", light.points},
                         {"sampled", light.sampled},

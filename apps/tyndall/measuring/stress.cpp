@@ -33,7 +33,7 @@ std::vector<const StressCase*> chosen_cases(const std::string& patterns) {
     }
     if (chosen.empty())
         fail(ExitCode::usage, "--cases",
-             "no case has '" + printable(patterns, 60) + "' in its name (--list names them)");
+             "no case or group has '" + printable(patterns, 60) + "' in its name (--list shows them)");
     return chosen;
 }
 
@@ -88,7 +88,7 @@ StressReport run_cases(std::span<const StressCase* const> cases, std::span<const
 int run(const Options& texts, const Globals& globals) {
     const std::vector<Mode> chosen = chosen_modes(texts.modes);
     const std::vector<const StressCase*> cases = cases_for(chosen, chosen_cases(texts.cases));
-    if (cases.empty()) fail(ExitCode::usage, "--modes", "none of these takes part in the cases chosen");
+    if (cases.empty()) fail(ExitCode::usage, "--modes", "none of these modes takes part in the chosen cases");
     if (texts.list) {
         print_report(stress_list(cases));
         return 0;
@@ -110,21 +110,21 @@ int run(const Options& texts, const Globals& globals) {
 }
 
 Run add_stress(const Command& program) {
-    const Command command = program.command("stress", "where each mode fails, and whether it says so");
+    const Command command = program.command("stress", "test where each mode fails, and whether it warns");
     auto texts = std::make_shared<Options>();
-    command.option("--modes", texts->modes, "which modes, between commas (default: all)", "NAMES");
+    command.option("--modes", texts->modes, "which modes, comma-separated (default: all)", "NAMES");
     command.option("--cases", texts->cases,
-                   "cases with one of these in their name or group, between commas\n(default: all)", "PARTS");
-    command.option("-o,--output", texts->output, "writes stress.txt, stress.json and stress.html there, case by case",
-                   "DIR");
-    command.flag("--resume", texts->resume, "keep the cases that stress.json in the output folder has already");
+                   "cases with one of these in their name or group, comma-separated\n(default: all)", "PARTS");
+    command.option("-o,--output", texts->output,
+                   "folder for stress.txt, stress.json and stress.html, updated case by case", "DIR");
+    command.flag("--resume", texts->resume, "keep the cases that are already in stress.json in the output folder");
     command.flag("--list", texts->list, "only list the cases and what they sweep");
-    command.footer("Examples: everything, some minutes; then one mode's shadows\n"
+    command.footer("Examples: everything, in some minutes; then one mode's shadows\n"
                    "  tyndall stress -o out/stress\n"
                    "  tyndall stress --modes shadow-map --cases shadows\n"
                    "Each case is a tiny scene in which one condition goes from mild to hard. A mode holds, degrades\n"
-                   "from some value on and has said so before (tyndall render says it too), or fails in silence.\n"
-                   "Exit code 0: none fails in silence; 1: one does.");
+                   "from some value on with a warning beforehand (tyndall render gives it too), or fails silently.\n"
+                   "Exit code 0: none fails silently; 1: one does.");
     return [texts](const Globals& globals) { return run(*texts, globals); };
 }
 }

@@ -18,7 +18,8 @@ small { color: #666 } td table { font-size: 85%; background: #fff } td table td 
 
 // A row for every value of the sweep: error, allowed error, bias and the warning given.
 std::string points_table(const StressResult& result) {
-    std::string text = "<table><tr><td>" + xml_text(result.stress->sweep) + "<td>error<td>allowed<td>bias<td>said</tr>";
+    std::string text =
+        "<table><tr><td>" + xml_text(result.stress->sweep) + "<td>error<td>allowed<td>bias<td>warning</tr>";
     for (const StressPoint& point : result.points) {
         text += formatted("<tr><td>%s<td>%.3g<td>%.3g<td>%s<td>%s",
                           xml_text(stress_value(*result.stress, point.value)).c_str(), point.error, point.allowed,
@@ -47,8 +48,8 @@ std::string stress_html(const StressReport& report) {
                        std::string(style) + "</style>\n<h1>Stability of every mode</h1>\n<p>" +
                        xml_text(stress_summary(report)) +
                        ".</p>\n<p>Each case sweeps a condition from mild to hard. Green: the mode holds throughout. "
-                       "Yellow: it degrades from this value on and says so before it renders. Red: it fails and says "
-                       "nothing. A click shows every value.</p>\n<table><thead><tr><th>case";
+                       "Yellow: it degrades from this value on and warns before it renders. Red: it fails without a "
+                       "warning. Click a result to see every value.</p>\n<table><thead><tr><th>case";
     for (const std::string& mode : report.modes) text += "<th>" + xml_text(mode);
     text += "</tr></thead><tbody>\n";
     std::string_view group;

@@ -18,8 +18,8 @@ std::string fault_text(const StressPoint& point) {
     if (point.bias >= 0) text += formatted("; bias %.3g, allowed %.3g", point.bias, point.allowed_bias);
     if (point.non_finite) text += "; " + count_text(point.non_finite, "value") + " not finite";
     if (point.negative) text += "; " + count_text(point.negative, "value") + " below 0 or above 1";
-    if (point.silent() && point.said()) return text + formatted("; what was said excuses %.3g", point.excused_up_to);
-    if (point.silent()) return text + "; nothing said";
+    if (point.silent() && point.said()) return text + formatted("; its warning allows up to %.3g", point.excused_up_to);
+    if (point.silent()) return text + "; no warning";
     return text + "; " + point.warning;
 }
 
@@ -100,7 +100,7 @@ std::string stress_summary(const StressReport& report) {
     const size_t finished = report.cases().size();
     const std::string cases =
         finished < report.asked ? formatted("%zu of %zu cases", finished, report.asked) : count_text(finished, "case");
-    return formatted("%s, %zu results: %d hold, %d degrade and say so, %d fail in silence; of %d warnings "
+    return formatted("%s, %zu results: %d hold, %d degrade with a warning, %d fail silently; of %d warnings "
                      "\"wrong\" %d (%.1f %%) with an error below 5 %%",
                      cases.c_str(), report.results.size(), report.count(Verdict::holds),
                      report.count(Verdict::degrades), report.count(Verdict::fails), warnings.count, warnings.idle,
@@ -120,8 +120,8 @@ std::string stress_text(const StressReport& report) {
         text.erase(text.find_last_not_of(' ') + 1);
         text += "\n";
     }
-    return text + details(report, Verdict::degrades, "Degrades, and says so beforehand:") +
-           details(report, Verdict::fails, "Fails in silence:") + "\n" + stress_summary(report) + "\n";
+    return text + details(report, Verdict::degrades, "Degrades, with a warning beforehand:") +
+           details(report, Verdict::fails, "Fails silently:") + "\n" + stress_summary(report) + "\n";
 }
 
 std::string stress_json(const StressReport& report) {

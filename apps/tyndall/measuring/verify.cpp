@@ -23,7 +23,7 @@ std::string table(const std::vector<Check>& checks) {
     for (const Check& check : checks) {
         if (check.topic != topic) text += formatted("%s%s\n", topic.empty() ? "" : "\n", check.topic.c_str());
         topic = check.topic;
-        text += formatted("  %-4s %-58s %11s  expected %11s +- %-9.2g %s\n", check.holds() ? "ok" : "OFF",
+        text += formatted("  %-4s %-58s %11s  expected %11s +- %-9.2g %s\n", check.holds() ? "ok" : "FAIL",
                           check.name.c_str(), value_text(check.measured).c_str(), value_text(check.expected).c_str(),
                           check.tolerance, check.basis.c_str());
     }
@@ -61,7 +61,7 @@ void refuse_scene_options(const Options& texts) {
                                                                   {"--samples", &texts.samples},
                                                                   {"--seed", &texts.seed}};
     for (const auto& [name, text] : options)
-        if (!text->empty()) fail(ExitCode::usage, name, "belongs to the proof of a scene: tyndall verify SCENE.json");
+        if (!text->empty()) fail(ExitCode::usage, name, "needs a scene: tyndall verify SCENE.json");
 }
 
 int run_verify(const Options& texts, const Globals& globals) {
@@ -81,15 +81,16 @@ int run_verify(const Options& texts, const Globals& globals) {
     for (const Check& check : checks) off += !check.holds();
     print_report(globals.json ? checks_json(checks, off) : table(checks));
     if (!globals.quiet)
-        say(count_text(checks.size(), "check") + ", " + (off ? std::to_string(off) + " off" : std::string("all hold")));
+        say(count_text(checks.size(), "check") + ", " +
+            (off ? std::to_string(off) + " failed" : std::string("all hold")));
     return static_cast<int>(off ? ExitCode::differs : ExitCode::ok);
 }
 }
 
 Run add_verify(const Command& program) {
-    const Command command = program.command("verify", "prove this program right, or a scene's image");
+    const Command command = program.command("verify", "check the correctness of the program, or of a scene's images");
     auto texts = std::make_shared<Options>();
-    command.option("SCENE", texts->scene, "a scene to check on its own data; without, the program alone", "");
+    command.option("SCENE", texts->scene, "a scene to check on its own data (default: only the program)", "");
     command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
     command.option("--camera", texts->camera, "which camera (default: the scene's)", "NAME");
     command.option("--res", texts->resolution, "size of the images compared (default: 160x90)", "WxH");
@@ -104,7 +105,7 @@ Run add_verify(const Command& program) {
                    "Without a scene: closed forms, published tables, conservation of energy, invariances. With one:\n"
                    "same bits with any number of threads and for crops, units of length, lights that add up, the fog\n"
                    "in a white furnace, and the march against the path tracer's first order, tile by tile.\n"
-                   "Exit code 0: all checks hold; 1: one is off.");
+                   "Exit code 0: all checks hold; 1: one failed.");
     return [texts](const Globals& globals) { return run_verify(*texts, globals); };
 }
 }

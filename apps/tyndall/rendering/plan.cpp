@@ -122,9 +122,9 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
         request.grouping.counts = planned.counts;
         request.grouping.error = planned.error;
         if (!globals.quiet)
-            say(formatted("frame %d needs %.3g samples per pixel, one run of it about ", request.frames[0],
+            say(formatted("frame %d needs %.3g samples per pixel, in one run about ", request.frames[0],
                           planned.samples) +
-                seconds_text(planned.seconds) + " here");
+                seconds_text(planned.seconds) + " on this machine");
     } else {
         request.grouping = grouping_of(samples, groups);
         request.grouping.error = first_frame_error(scene, request, plan);
@@ -132,13 +132,13 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
     drop_absent_layers(scene, plan, request);
     const int most = request.grouping.groups * (wants_layer(request, "halves") ? 1 : request.grouping.sections);
     if (measures_noise(request) && most < 2)
-        fail(ExitCode::usage, "--aov", "variance and halves take two samples per pixel at least");
+        fail(ExitCode::usage, "--aov", "variance and halves need at least two samples per pixel");
     check_crop(request, request.resolution.x > 0 ? request.resolution : scene.resolution);
     save_plan(file, scene, {request, plan, {}, build_name()});
     const std::optional<Integrator>& integrator = request.grouping.error.integrator;
     if (request.target_error > 0 && integrator && integrator->error.bound >= request.target_error)
         fail(ExitCode::differs, request.scene_file.string(),
-             formatted("%s was written, but the mode's own error is %.3g, at most %.3g: samples do not help",
+             formatted("%s was written, but the mode's own error is %.3g, at most %.3g: more samples do not help",
                        printable(file, 100).c_str(), integrator->error.error, integrator->error.bound));
     if (globals.quiet) return 0;
     if (samples != wanted && !request.grouping.counts)
@@ -153,11 +153,12 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
 
 // Throws Error (usage) for options that would make a saved plan's images depend on anything but the plan.
 void check_saved(const Options& texts) {
-    if (!texts.frame.empty()) fail(ExitCode::usage, "--frame", "with --save the first of --frames is measured");
+    if (!texts.frame.empty())
+        fail(ExitCode::usage, "--frame", "cannot be combined with --save, which measures the first of --frames");
     if (!texts.render.time_budget.empty())
-        fail(ExitCode::usage, "--time-budget", "a saved plan does not go by the clock: use --samples");
+        fail(ExitCode::usage, "--time-budget", "a saved plan cannot depend on time: use --samples");
     if (!texts.render.history.empty())
-        fail(ExitCode::usage, "--history", "planned frames are rendered one by one, without those before them");
+        fail(ExitCode::usage, "--history", "planned frames are rendered independently, without earlier frames");
 }
 
 int groups_option(const Options& texts) {
@@ -168,8 +169,8 @@ int groups_option(const Options& texts) {
     const int groups = static_cast<int>(integer_option("--groups", texts.groups, 1, max_groups));
     if (groups < fewest)
         fail(ExitCode::usage, "--groups",
-             std::string(target ? "an error that is wanted takes" : "halves take") +
-                 " two independent groups at least");
+             std::string(target ? "--target-error and --mode auto need" : "halves need") +
+                 " at least two independent groups");
     return groups;
 }
 
@@ -183,7 +184,7 @@ int save_as_asked(const Options& texts, const Globals& globals) {
 
 int run_plan(const Options& texts, const Globals& globals) {
     if (texts.render.mode != automatic && texts.save.empty())
-        fail(ExitCode::usage, "--mode", "a plan finds the mode by itself; with --save it can be given");
+        fail(ExitCode::usage, "--mode", "needs --save: otherwise the plan chooses the mode");
     if (!texts.save.empty()) check_saved(texts);
     if (texts.render.mode != automatic) return save_as_asked(texts, globals);
     RenderRequest request = make_request(texts.render, main_mode());
@@ -213,7 +214,7 @@ int run_plan(const Options& texts, const Globals& globals) {
         print_report(plan_json(plan, request));
     } else {
         const std::string goal = plan.goal.error > 0 ? formatted("error at most %g of the mean", plan.goal.error)
-                                                     : formatted("the best in %g s", plan.goal.seconds);
+                                                     : formatted("lowest error in %g s", plan.goal.seconds);
         print_report(formatted("%s, frame %d, %dx%d: %s\n\n", printable(request.scene_file.string(), 200).c_str(),
                                request.frames[0], view.size.x, view.size.y, goal.c_str()) +
                      plan_text(plan) + "\n" + command_of(plan, request, !texts.frame.empty()) + "\n");
@@ -221,7 +222,7 @@ int run_plan(const Options& texts, const Globals& globals) {
     if (!globals.quiet)
         say("measured in " + seconds_text(plan.terms_seconds + plan.contest_seconds) + " on a few pixels");
     if (plan.chosen.gets_there()) return 0;
-    fail(ExitCode::differs, request.scene_file.string(), "no mode reaches the goal; the one named comes closest");
+    fail(ExitCode::differs, request.scene_file.string(), "no mode reaches the goal; the one shown comes closest");
 }
 }
 
@@ -239,14 +240,15 @@ int save_plan_as_asked(const RenderOptions& render, const std::string& groups, c
 
 void add_groups_option(const Command& command, std::string& groups) {
     command.option("--groups", groups,
-                   "how many groups of samples, each scrambled by itself: more of them tell noise\n"
-                   "better, fewer have less of it (default: 8 for an error that is wanted, 2 for\n"
-                   "halves, else 1, whose noise is told from sections of it, too large)",
+                   "how many groups of samples, each scrambled independently: more groups measure\n"
+                   "noise better, fewer have less of it (default: 8 with --target-error or\n"
+                   "--mode auto, 2 for halves, else 1: noise is then estimated from its sections,\n"
+                   "and overestimated)",
                    "K");
 }
 
 Run add_plan(const Command& program) {
-    const Command command = program.command("plan", "which model a scene needs at an error or in a time, and why");
+    const Command command = program.command("plan", "which mode a scene needs for an error or a time, and why");
     auto texts = std::make_shared<Options>();
     RenderOptions& render = texts->render;
     render.mode = automatic, render.output = "out.####.exr";
@@ -255,13 +257,14 @@ Run add_plan(const Command& program) {
     command.option("--save", texts->save, "write the plan to a file, for tyndall render --plan", "FILE");
     add_groups_option(command, texts->groups);
     command.option("--frame", texts->frame, "which frame of the scene to measure (default: its first)", "N");
-    command.option("--mode", render.mode, "with --save: a mode, instead of the one that is found", "NAME");
+    command.option("--mode", render.mode, "with --save: a mode, instead of the one the plan chooses", "NAME");
     add_planned_options(command, render);
-    command.footer("Example: tyndall plan scenes/window.json --target-error 0.02\n"
-                   "Each term of the light is left out in turn, on a few pixels, and the difference measured; where a\n"
-                   "closed form bounds it closely enough, that is taken instead. Modes are then measured from coarse\n"
-                   "to fine against exact single scattering. tyndall render --mode auto does the same and renders.\n"
-                   "Exit code 0: some mode gets there; 1: none does.");
+    command.footer(
+        "Example: tyndall plan scenes/window.json --target-error 0.02\n"
+        "Each term of the light is switched off in turn, on a few pixels, and the difference measured; where\n"
+        "a closed form bounds it closely enough, that is used instead. Modes are then measured from coarse\n"
+        "to fine against exact single scattering. tyndall render --mode auto does the same and renders.\n"
+        "Exit code 0: a mode reaches the goal; 1: none does.");
     return [texts](const Globals& globals) { return run_plan(*texts, globals); };
 }
 }

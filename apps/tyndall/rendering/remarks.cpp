@@ -36,7 +36,7 @@ Limitations limitations_of(const Scene& scene, const RenderRequest& request, con
 
 void say_rounding(const RenderRequest& request, const Globals& globals) {
     if (!globals.quiet && request.target_error > 0 && request.target_error < 1e-3 && !request.exr.full_float)
-        say("note: 16 bit floats round by up to 0.0005 of a value: add --float");
+        say("note: 16-bit floats round by up to 0.0005 of a value: add --float");
 }
 
 namespace {
@@ -57,7 +57,7 @@ void say_idle_settings(const std::vector<std::string>& settings, const Mode& mod
     if (globals.quiet) return;
     for (const std::string& setting : settings)
         if (!reads(mode, setting.substr(0, setting.find('='))))
-            say("note: " + printable(setting, 60) + " changes nothing: the mode is " + std::string(mode.name));
+            say("note: " + printable(setting, 60) + " has no effect in mode " + std::string(mode.name));
 }
 }
 
@@ -66,9 +66,9 @@ void say_before(const Scene& scene, const Snapshot& first, const Limitations& li
                 const Globals& globals) {
     say_idle_settings(settings, mode, globals);
     if (request.history > 0 && !mode.remembers && !globals.quiet)
-        say("note: --history changes nothing: " + std::string(mode.name) + " has no memory");
+        say("note: --history has no effect: " + std::string(mode.name) + " does not use earlier frames");
     if (request.time_samples > 0 && !first.moments && !globals.quiet)
-        say("note: --time-samples changes nothing: the shutter is closed, or nothing moves while it is open");
+        say("note: --time-samples has no effect: the shutter is closed, or nothing moves while it is open");
     say_limitations(scene, first, limitations, globals);
 }
 
@@ -76,7 +76,7 @@ void say_files_found(const RenderRequest& request, const Globals& globals) {
     if (!request.files || !globals.verbose || globals.quiet) return;
     for (const CacheCost& cost : request.files->costs)
         if (cost.kind == CostKind::found)
-            say("found " + printable(cost.file, 200) + formatted(", which took %.3f s to make", cost.seconds));
+            say("found " + printable(cost.file, 200) + formatted(", which took %.3f s to compute", cost.seconds));
 }
 
 void say_summary(const RenderReport& report, const RenderRequest& request) {
@@ -84,7 +84,7 @@ void say_summary(const RenderReport& report, const RenderRequest& request) {
     for (const FrameReport& frame : report.frames) kept += frame.kept;
     const int rendered = static_cast<int>(report.frames.size()) - kept;
     std::string line = count_text(rendered, "frame") + " rendered in " + seconds_text(report.seconds);
-    if (rendered > 1) line += " (" + seconds_text(report.seconds / rendered) + " a frame)";
+    if (rendered > 1) line += " (" + seconds_text(report.seconds / rendered) + " per frame)";
     if (kept > 0) line += formatted(", %d kept", kept);
     say(line + ", " + printable(request.output));
 }
@@ -92,8 +92,8 @@ void say_summary(const RenderReport& report, const RenderRequest& request) {
 void say_look(const RenderRequest& request) {
     const std::string first = request.frames.empty() ? request.output : frame_name(request.output, request.frames[0]);
     if (request.png)
-        say("look: " + printable(std::filesystem::path(first).replace_extension(".png").string()));
+        say("to view: " + printable(std::filesystem::path(first).replace_extension(".png").string()));
     else
-        say("look: add --png for images that any program shows; the .exr opens in tev, Blender, Nuke and others");
+        say("hint: add --png for images that any program shows; the .exr opens in tev, Blender, Nuke and others");
 }
 }

@@ -89,7 +89,7 @@ Rendered render_frames(const Scene& scene, std::span<const RenderRequest> reques
                     {}};
     const std::vector<std::string> absent = drop_absent_layers(scene, result.plan, result.request);
     if (!globals.quiet && !absent.empty())
-        say("note: no layer " + joined(absent, ", ") + ": there is no such light in the scene's fog");
+        say("note: no layer " + joined(absent, ", ") + ": the scene's fog has no such light");
     settle_noise(request, result.plan, globals);
     measure_exposure(scene, requests, first.snapshot, common, globals);
     result.plan.exposure = common.exposure;
@@ -98,7 +98,7 @@ Rendered render_frames(const Scene& scene, std::span<const RenderRequest> reques
     const bool measured = !globals.quiet || globals.json || !texts.stats.empty();
     Limitations limitations = limitations_of(scene, request, result.plan, first.snapshot, measured);
     if (request.history > 0 && result.plan.mode->remembers && is_chromatic(first.snapshot))
-        fail(ExitCode::usage, "--history", "does not go with fog whose extinction differs between the channels");
+        fail(ExitCode::usage, "--history", "cannot be combined with fog whose extinction differs between the channels");
     say_before(scene, first.snapshot, limitations, texts.settings, request, *result.plan.mode, globals);
 
     Progress progress(globals.progress, several ? request.mode : "render", static_cast<double>(request.frames.size()),
@@ -134,7 +134,7 @@ int outcome(const std::vector<Rendered>& all, const std::string& scene) {
     if (non_finite == 0) return 0;
     fail(ExitCode::non_finite, scene,
          "all frames were written, but " + count_text(non_finite, "sample") +
-             " were not finite numbers and were left out");
+             " were not finite numbers and were ignored");
 }
 
 std::string sheet_name(const RenderOptions& texts, int frame) {
@@ -161,7 +161,7 @@ void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const Re
         const Display display = display_of(scene, all[0].request, all[0].plan, frame);
         write_sheet(sheet_name(texts, frame), entries, texts.sheet_reference, frame, display);
     }
-    if (!globals.quiet) say("look: " + printable(sheet_name(texts, all[0].request.frames[0])));
+    if (!globals.quiet) say("to view: " + printable(sheet_name(texts, all[0].request.frames[0])));
 }
 
 // The requests of all modes asked for; several modes have separate output files.
@@ -196,7 +196,7 @@ std::shared_ptr<CacheFolder> prepared_files(const RenderOptions& texts, const Sa
                                             const std::vector<int>& frames, const Globals& globals) {
     std::vector<std::string> notes;
     std::shared_ptr<CacheFolder> files = open_prepared(plan, frames, texts.cache_local, notes);
-    if (!files && !texts.cache_local.empty()) notes.push_back("--cache-local changes nothing: nothing was prepared");
+    if (!files && !texts.cache_local.empty()) notes.push_back("--cache-local has no effect: nothing was prepared");
     if (!globals.quiet)
         for (const std::string& note : notes) say("note: " + printable(note, 460));
     return files;
@@ -206,7 +206,7 @@ std::shared_ptr<CacheFolder> prepared_files(const RenderOptions& texts, const Sa
 void check_requests(const RenderOptions& texts, std::vector<RenderRequest>& requests, OutputPlaces& places) {
     choice_among("--order", texts.order, {"listed", "spread"});
     if (requests.size() == 1 && !texts.sheet_reference.empty())
-        fail(ExitCode::usage, "--reference", "is for the sheet of several modes; tyndall compare measures one image");
+        fail(ExitCode::usage, "--reference", "needs several modes; for one image use tyndall compare");
     for (const RenderRequest& request : requests) {
         if (!request.frames.empty())
             places.check(request.output, request.frames);
@@ -245,7 +245,7 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
     for (RenderRequest& request : requests) request.light_units = options.light_units;
     OutputPlaces places;
     check_requests(texts, requests, places);
-    set_stop_remark(part ? "; what is finished is kept, --resume continues"
+    set_stop_remark(part ? "; finished work is kept, --resume continues"
                          : "; finished frames are kept, --resume continues",
                     part ? 10 : 1);
     const Scene scene = load_scene(requests[0].scene_file, options);
@@ -277,7 +277,7 @@ Run add_render(const Command& program) {
     command.footer("Example: the first second at full HD, with PNGs to look at\n"
                    "  tyndall render scenes/window.json -o out/window.####.exr --frames 1-24 --res 1920x1080 --png\n"
                    "A quick look first: --quality draft --res 480x270 --frames 1\n"
-                   "Light is in candela and lux, lengths in metres, colours linear Rec.709.");
+                   "Light is in candela and lux, lengths in metres, colors linear Rec.709.");
     return [texts](const Globals& globals) { return run_render(*texts, globals); };
 }
 }

@@ -25,10 +25,10 @@ void add_what(const Command& command, RenderOptions& texts) {
 void add_mode(const Command& command, RenderOptions& texts) {
     command
         .option("--mode", texts.mode,
-                "rendering technique (default: march), or auto: the quickest that gets to\n"
+                "rendering technique (default: march), or auto: the quickest that reaches\n"
                 "--target-error (default: by quality, 0.05 for preview) or the best for\n"
                 "--time-budget, as tyndall plan finds it for the first frame. Several\n"
-                "(a,b,c) or all: each then writes files of its own, out.MODE.####.exr, and\n"
+                "(a,b,c) or all: each then writes its own files, out.MODE.####.exr, and\n"
                 "a PNG shows them side by side; tyndall modes lists them",
                 "NAMES")
         .group("Quality");
@@ -44,36 +44,36 @@ void add_how(const Command& command, RenderOptions& texts) {
            "as many for path)",
            "N");
     option("--target-error", texts.target_error,
-           "go on until the error (rmse) is below this share of the image's mean,\n"
+           "render until the error (rmse) is below this share of the image's mean,\n"
            "0.01 for instance; not for billboard and radial-blur. A mode's error is\n"
            "measured on a few pixels against exact single scattering, and its steps,\n"
-           "maps and grids are picked by it, those of --set apart; path has no error\n"
-           "but noise. Exit code 1 when the error stays larger",
+           "maps and grids are chosen by it, except those given by --set; path has no\n"
+           "error but noise. Exit code 1 when the error stays larger",
            "E");
     option("--time-budget", texts.time_budget,
-           "the best image in so many seconds for each frame, but one ray per pixel\n"
-           "at least; not for billboard and radial-blur. It is the time of the whole process,\n"
-           "loading, measuring and writing included: N frames take N times as long at most, and\n"
-           "what one leaves the next may use. Exit code 1 when that is not enough. The image\n"
-           "depends on the machine; with --target-error what comes first ends it",
+           "the best image in this many seconds per frame, with at least one ray per\n"
+           "pixel; not for billboard and radial-blur. It covers the whole process, loading,\n"
+           "measuring and writing included: N frames take at most N times as long, and time\n"
+           "that one frame leaves the next may use. Exit code 1 when that is not enough. The\n"
+           "image depends on the machine; with --target-error, the first one reached ends it",
            "SECONDS");
     option("--orders", texts.orders,
            "how many times light scatters, in fog or on surfaces, or all of them\n"
-           "(default: 1; all for path). In march and froxel a grid of light that has\n"
-           "scattered before is added to the fog, on top of exact single scattering;\n"
+           "(default: 1; all for path). In march and froxel a grid of multiply\n"
+           "scattered light is added to the fog, on top of exact single scattering;\n"
            "surfaces keep direct light",
            "N");
     option("--history", texts.history,
-           "frames before each that modes with a memory (tyndall modes) look at first,\n"
-           "to smooth their noise (default: 0)",
+           "earlier frames that modes with a history (tyndall modes MODE) use to smooth\n"
+           "the noise of each frame (default: 0)",
            "N");
     option("--shutter", texts.shutter,
            "when the shutter opens and closes, in frames counted from the frame, instead of the\n"
-           "camera's: --shutter=-0.25,0.25 is film's half frame; 0,0 switches motion blur off",
+           "camera's: --shutter=-0.25,0.25 is a 180-degree shutter; 0,0 disables motion blur",
            "OPEN,CLOSE");
     option("--time-samples", texts.time_samples,
-           "moments that a frame with an open shutter is made of: each is prepared by itself.\n"
-           "Default: 4 to 512, by how far things move on the image meanwhile",
+           "moments of a frame with an open shutter; each is prepared separately.\n"
+           "Default: 4 to 512, by how far things move in the image meanwhile",
            "N");
     command
         .options("--set", texts.settings,
@@ -84,7 +84,7 @@ void add_how(const Command& command, RenderOptions& texts) {
     option("--seed", texts.seed, "another pattern of noise (default: 0)", "N");
     option("--isa", texts.isa,
            "instruction set: auto (default), avx2 or avx512. auto and avx2 give the\n"
-           "same bits on every machine, avx512 gives others",
+           "same bits on every machine, avx512 gives different ones",
            "NAME");
 }
 
@@ -101,36 +101,36 @@ void add_layers(const Command& command, RenderOptions& texts) {
         .group(group);
     command
         .option("--background", texts.background,
-                "on (default), or off to leave the background out of colour and alpha, for\n"
-                "images that go over others",
+                "on (default), or off to exclude the background from color and alpha, for\n"
+                "compositing over other images",
                 "WHAT")
         .group(group);
-    command.flag("--float", texts.full_float, "colours as 32 bit floats instead of 16 bit").group(group);
+    command.flag("--float", texts.full_float, "colors as 32-bit floats instead of 16-bit").group(group);
 }
 
 void add_results(const Command& command, RenderOptions& texts) {
     const char* group = "Results";
-    command.flag("--png", texts.png, "also write images for looking at (8-bit sRGB)").group(group);
+    command.flag("--png", texts.png, "also write images for viewing (8-bit sRGB)").group(group);
     command
         .option("--exposure", texts.exposure,
                 "how much brighter (+) or darker (-) than the EXRs the PNGs are, in stops,\n"
                 "or auto: measured on the first, middle and last frame of the scene, one for\n"
-                "all frames (default: the scene's exposure, auto where it states none)",
+                "all frames (default: the scene's exposure, or auto if it has none)",
                 "EV")
         .group(group);
     command
         .option("--view-transform", texts.view_transform,
-                "how PNGs show what is brighter than a screen: filmic (AgX; default) rolls\n"
-                "it off, srgb cuts it off at 1",
+                "how PNGs show values above display white: filmic (AgX; default) rolls them\n"
+                "off, srgb clips them at 1",
                 "NAME")
         .group(group);
     command
         .option("--reference", texts.sheet_reference,
-                "with several modes: an EXR that the PNG of all shows beside them, with the\n"
-                "error and the FLIP of each against it; #### stands for the frame number",
+                "with several modes: a reference EXR to show beside them in the common PNG, with\n"
+                "the error and FLIP of each against it; #### stands for the frame number",
                 "FILE")
         .group(group);
-    command.flag("--resume", texts.resume, "keep frames that are already there and still right").group(group);
+    command.flag("--resume", texts.resume, "skip frames that exist and are up to date").group(group);
     command
         .option("--order", texts.order,
                 "of frames: listed (default), or spread: the first, the last, then the middle\n"
@@ -156,15 +156,15 @@ void add_shares(const Command& command, RenderOptions& texts) {
            "i/N");
     option("--more", texts.more,
            "M groups of samples beyond those of the plan, as parts; M@G: beyond the first\n"
-           "G groups, where some were added before",
+           "G groups, if some were added before",
            "M[@G]");
     option("--checkpoint", texts.checkpoint,
-           "with --part: keep what is rendered of it in a file every so many minutes\n"
-           "(default: 10) and when stopped by SIGTERM; --resume goes on from there",
+           "with --part: save a checkpoint of the part every this many minutes\n"
+           "(default: 10) and when stopped by SIGTERM; --resume continues from it",
            "MINUTES");
     option("--cache-local", texts.cache_local,
-           "a folder of this machine that files of tyndall prepare are copied to first,\n"
-           "unless they are there; without it they are read where they lie",
+           "a local folder that files of tyndall prepare are copied to first, unless they\n"
+           "are there already; without it they are read in place",
            "DIR");
 }
 }

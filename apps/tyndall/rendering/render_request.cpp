@@ -23,7 +23,7 @@ void read_crop(const std::string& text, RenderRequest& request) {
     request.crop_low = {values[0], values[1]}, request.crop_high = {values[2], values[3]};
     if (request.crop_low.x >= request.crop_high.x || request.crop_low.y >= request.crop_high.y)
         fail(ExitCode::usage, "--crop",
-             "X1,Y1 have to lie right of and below X0,Y0; got '" + printable(text, 40) + "'");
+             "X1,Y1 must lie to the right of and below X0,Y0; got '" + printable(text, 40) + "'");
 }
 
 // Layers beside RGBA, from --aov.
@@ -47,7 +47,7 @@ void read_orders(const std::string& text, RenderRequest& request) {
         request.settings.fluence.orders = orders;
     else if (orders > 1)
         fail(ExitCode::usage, "--orders",
-             request.mode + " scatters light once only; --mode march, froxel and path take more");
+             request.mode + " scatters light once only; --mode march, froxel and path support more");
 }
 
 // Throws Error (usage) for a sample count together with a goal, which determines it; without a time budget, path takes
@@ -57,7 +57,7 @@ void check_samples(const RenderRequest& request, const Mode& mode) {
     if (request.settings.pixel.samples != settings_for(request.quality).pixel.samples)
         fail(ExitCode::usage, "--samples",
              std::string(request.time_budget > 0 ? "--time-budget" : "--target-error") +
-                 " decides how many rays a pixel takes");
+                 " already decides how many rays a pixel takes");
 }
 }
 
@@ -87,7 +87,8 @@ std::vector<const Mode*> asked_modes(std::string_view option, const std::string&
         return result;
     }
     for (const std::string& name : comma_list(text)) {
-        if (name == automatic) fail(ExitCode::usage, option, "auto is one mode of its choice: name it alone");
+        if (name == automatic)
+            fail(ExitCode::usage, option, "auto chooses the mode itself; do not combine it with others");
         const Mode& mode = find_mode(name, option);
         if (std::ranges::count(result, &mode)) fail(ExitCode::usage, option, name + " is named twice");
         result.push_back(&mode);
@@ -100,7 +101,7 @@ void read_look(const RenderOptions& texts, RenderRequest& request) {
     for (const auto& [name, text] :
          {std::pair{"--exposure", &texts.exposure}, {"--view-transform", &texts.view_transform}})
         if (!text->empty() && !texts.png)
-            fail(ExitCode::usage, name, "is for PNGs only, EXR files hold light as it is: add --png");
+            fail(ExitCode::usage, name, "applies to PNGs only, EXR files store light unchanged: add --png");
     request.automatic_exposure = texts.exposure == automatic;
     if (!texts.exposure.empty() && !request.automatic_exposure)
         request.exposure = number_option("--exposure", texts.exposure, -100, 100);
@@ -137,7 +138,7 @@ RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
     check_samples(request, mode);
     if (!texts.history.empty() && has_goal(request))
         fail(ExitCode::usage, "--history",
-             "does not go with --target-error and --time-budget: they measure single frames");
+             "cannot be combined with --target-error and --time-budget: they measure single frames");
     if (!texts.history.empty()) request.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
     if (!texts.shutter.empty()) request.shutter = shutter_option(texts.shutter);
     if (!texts.time_samples.empty())
@@ -152,7 +153,7 @@ RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
     if (!texts.aov.empty()) request.exr.layers = parsed_layers(texts.aov);
     request.background = choice_among("--background", texts.background, {"on", "off"}) == 0;
     if (!request.background && wants_layer(request, "background"))
-        fail(ExitCode::usage, "--aov", "there is no layer background with --background off");
+        fail(ExitCode::usage, "--aov", "the layer background is not available with --background off");
     request.exr.full_float = texts.full_float;
     request.png = texts.png, request.resume = texts.resume;
     request.isa = chosen_isa(texts.isa);
@@ -194,7 +195,7 @@ void check_planned(const RenderOptions& texts) {
                                                      {"--set", !texts.settings.empty()},
                                                      {"--float", texts.full_float}};
     for (const auto& [name, given] : decided)
-        if (given) fail(ExitCode::usage, name, "the plan has decided it: plan again to change it");
+        if (given) fail(ExitCode::usage, name, "is fixed by the plan: plan again to change it");
 }
 }
 
@@ -215,10 +216,12 @@ RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan) {
                 static_cast<int>(integer_option("--more", texts.more.substr(at + 1), grouping.groups, 1 << 20));
         if (texts.part.empty()) grouping.part = grouping.parts = 1;
     }
-    if (!texts.checkpoint.empty() && !is_part(grouping)) fail(ExitCode::usage, "--checkpoint", "is for --part");
+    if (!texts.checkpoint.empty() && !is_part(grouping))
+        fail(ExitCode::usage, "--checkpoint", "needs --part or --more");
     if (!texts.checkpoint.empty())
         request.checkpoint_seconds = 60 * number_option("--checkpoint", texts.checkpoint, 0.01, 10000);
-    if (is_part(grouping) && texts.png) fail(ExitCode::usage, "--png", "a part is no image: merge shows it");
+    if (is_part(grouping) && texts.png)
+        fail(ExitCode::usage, "--png", "a part is not an image; tyndall merge writes the frame");
     if (!texts.frames.empty()) {
         request.frames = parse_frames(texts.frames);
         for (const int frame : request.frames)

@@ -40,7 +40,7 @@ std::string attribute_text(const Imf::Attribute& attribute) {
     if (const auto* v = value_of<std::string>(attribute)) return *v;
     if (const auto* v = value_of<int>(attribute)) return std::to_string(*v);
     if (const auto* v = value_of<float>(attribute)) return numbers(v, 1);
-    if (const auto* v = value_of<double>(attribute)) return std::to_string(*v);
+    if (const auto* v = value_of<double>(attribute)) return formatted("%.17g", *v);
     if (const auto* v = value_of<Imath::V2f>(attribute)) return numbers(&v->x, 2);
     if (const auto* v = value_of<Imath::V3f>(attribute)) return numbers(&v->x, 3);
     if (const auto* v = value_of<Imath::M44f>(attribute)) return numbers(v->getValue(), 16);

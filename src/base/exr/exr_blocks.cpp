@@ -57,7 +57,7 @@ struct ExrBlock {
 void check_block(ExrCursor& table, std::string_view file, const ExrPartClaims& part, const ExrBlock& expected,
                  std::vector<unsigned char>& room) {
     const uint64_t offset = table.number<uint64_t>();
-    if (offset >= file.size()) refuse(table.file, expected.name + " is missing: cut off or damaged");
+    if (offset >= file.size()) refuse(table.file, expected.name + " is missing: the file is truncated or damaged");
     ExrCursor block{file.substr(offset), table.file};
     bool belongs = true;
     for (const int32_t number : expected.place) belongs &= block.integer() == number;

@@ -28,11 +28,11 @@ void read_channels(ExrCursor cursor, ExrPartClaims& claims) {
         const int step_x = cursor.integer(), step_y = cursor.integer();
         if (type < 0 || type > 2) refuse(cursor.file, "a channel has an unknown pixel type");
         if (step_x != step_y || (step_x != 1 && step_x != 2))
-            refuse(cursor.file, "a channel has a value for other than each or each second pixel");
+            refuse(cursor.file, "channel subsampling must be 1 or 2, the same in x and y");
         claims.channels.push_back({std::string(name), type == 1 ? 2 : 4, step_x});
         if (claims.channels.size() > max_channels) refuse(cursor.file, "more than 1024 channels");
     }
-    if (claims.channels.empty()) refuse(cursor.file, "there are no channels");
+    if (claims.channels.empty()) refuse(cursor.file, "the header lists no channels");
 }
 
 void read_window(ExrCursor cursor, ivec2& low, ivec2& high) {
@@ -45,7 +45,7 @@ void read_window(ExrCursor cursor, ivec2& low, ivec2& high) {
 
 void read_compression(ExrCursor cursor, ExrPartClaims& claims) {
     const auto number = static_cast<unsigned char>(cursor.bytes(1)[0]);
-    if (number >= compression_names.size()) refuse(cursor.file, "the compression is not known");
+    if (number >= compression_names.size()) refuse(cursor.file, "unknown compression");
     claims.compression = static_cast<ExrCompression>(number);
 }
 
@@ -79,7 +79,7 @@ struct ExpectedAttributes {
         for (int kind = 0; kind < kinds; ++kind) {
             if (name != names[kind].first) continue;
             if (type != names[kind].second) refuse(file, "the attribute " + std::string(name) + " has the wrong type");
-            if (seen[kind]) refuse(file, "the attribute " + std::string(name) + " is there twice");
+            if (seen[kind]) refuse(file, "the attribute " + std::string(name) + " appears twice");
             seen[kind] = true;
             return static_cast<Kind>(kind);
         }
@@ -108,7 +108,7 @@ void read_expected(ExpectedAttributes::Kind kind, ExrCursor value, ExrPartClaims
 void read_other(std::string_view name, ExrCursor value, bool multipart, ExrPartClaims& claims) {
     if (name == "type") {
         if (value.left != "scanlineimage" && value.left != "tiledimage")
-            refuse(value.file, "only scanline images and tiled images are read");
+            refuse(value.file, "only scanline and tiled images are supported");
         if (multipart) claims.tiled = value.left == "tiledimage";
     } else if (name == "chunkCount") {
         claims.chunks = static_cast<uint32_t>(value.integer());
@@ -132,14 +132,14 @@ void check_amount(const ExrPartClaims& claims, uint64_t file_bytes, const std::s
         bytes += pixels * static_cast<uint64_t>(channel.bytes) / static_cast<uint64_t>(channel.step * channel.step);
     }
     if (bytes / best_ratio(claims.compression) > file_bytes)
-        refuse(file, "the file is too short for its image: cut off or damaged");
+        refuse(file, "the file is too short for its image: truncated or damaged");
     if (!claims.tiled) return;
     if (static_cast<uint64_t>(claims.tile.x) * static_cast<uint64_t>(claims.tile.y) * bytes_per_pixel >
         largest_tile_bytes)
         refuse(file, "a tile would need more than 256 MiB of memory");
     const ivec2 tiles = (size + claims.tile - 1) / claims.tile;
     if (static_cast<uint64_t>(tiles.x) * static_cast<uint64_t>(tiles.y) > file_bytes / sizeof(uint64_t))
-        refuse(file, "the file is too short for its tiles: cut off or damaged");
+        refuse(file, "the file is too short for its tiles: truncated or damaged");
 }
 
 // Reads one part's header. Returns false at the end of the headers of a multipart file.
@@ -171,12 +171,12 @@ bool read_header(ExrCursor& cursor, uint32_t flags, ExrPartClaims& claims) {
 uint32_t read_flags(ExrCursor& cursor) {
     if (cursor.left.size() < 8 || cursor.integer() != 20000630) refuse(cursor.file, "this is not an OpenEXR file");
     const uint32_t version = static_cast<uint32_t>(cursor.integer());
-    if ((version & 0xff) != 2) refuse(cursor.file, "an OpenEXR version other than 2");
-    if (version & deep_flag) refuse(cursor.file, "deep images are not read");
+    if ((version & 0xff) != 2) refuse(cursor.file, "unsupported OpenEXR version; only version 2 is supported");
+    if (version & deep_flag) refuse(cursor.file, "deep images are not supported");
     if (version & ~(0xffu | tiled_flag | long_names_flag | multipart_flag))
         refuse(cursor.file, "the header has unknown flags");
     if ((version & multipart_flag) && (version & tiled_flag))
-        refuse(cursor.file, "the header's flags exclude each other");
+        refuse(cursor.file, "the header's flags contradict each other");
     return version;
 }
 }
@@ -191,12 +191,12 @@ ExrClaims read_exr_claims(std::string_view bytes, const std::string& file) {
     for (ExrPartClaims part; read_header(cursor, flags, part); part = {}) {
         check_amount(part, bytes.size(), file);
         if (part.chunks > bytes.size() / sizeof(uint64_t))
-            refuse(file, "the file is too short for its blocks: cut off or damaged");
+            refuse(file, "the file is too short for its blocks: truncated or damaged");
         claims.parts.push_back(std::move(part));
         if (!claims.multipart) break;
         if (claims.parts.size() > max_parts) refuse(file, "more than 256 parts");
     }
-    if (claims.parts.empty()) refuse(file, "there are no parts");
+    if (claims.parts.empty()) refuse(file, "the file has no parts");
     claims.tables = bytes.size() - cursor.left.size();
     return claims;
 }

@@ -13,7 +13,7 @@ struct ExrCursor {
     const std::string& file;
 
     std::string_view bytes(size_t count) {
-        if (count > left.size()) refuse(file, "the file ends early");
+        if (count > left.size()) refuse(file, "the file is truncated or damaged");
         const std::string_view result = left.substr(0, count);
         left.remove_prefix(count);
         return result;
@@ -26,7 +26,7 @@ struct ExrCursor {
     int32_t integer() { return number<int32_t>(); }
     std::string_view name() {
         const size_t end = left.substr(0, 256).find('\0');
-        if (end == std::string_view::npos) refuse(file, "the header holds a name without an end");
+        if (end == std::string_view::npos) refuse(file, "the header contains an unterminated name");
         const std::string_view result = bytes(end);
         bytes(1);
         return result;

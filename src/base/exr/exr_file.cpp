@@ -54,9 +54,9 @@ void decode_rows(Imf::InputFile& input, int first, int count, ExrFile& file) {
 
 ExrFile read_checked(std::string_view bytes, const std::string& file, bool pixels) {
     const ExrClaims claims = read_exr_claims(bytes, file);
-    if (claims.multipart) refuse(file, "files of several parts are not read");
+    if (claims.multipart) refuse(file, "multi-part files are not supported");
     if (std::ranges::any_of(claims.parts[0].channels, [](const ExrChannelClaim& c) { return c.step != 1; }))
-        refuse(file, "channels of reduced resolution are not read");
+        refuse(file, "subsampled channels are not supported");
     check_exr_blocks(bytes, claims, 0, file);
     return guarded_exr(file, [&] {
         ExrStream stream(file, bytes);
@@ -89,7 +89,7 @@ ExrFile read_exr_rows(const std::filesystem::path& file, int first, int count) {
     return guarded_exr(file.string(), [&] {
         Imf::InputFile input(file.c_str(), 0);
         ExrFile result = described(input.header());
-        if (first + count > result.size.y) refuse(file.string(), "has changed while it was read");
+        if (first + count > result.size.y) refuse(file.string(), "was changed while it was being read");
         decode_rows(input, first, count, result);
         return result;
     });

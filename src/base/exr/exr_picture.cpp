@@ -48,15 +48,15 @@ Chosen choose_part(std::string_view bytes, const std::string& where) {
     const std::vector<ExrPartClaims>& parts = chosen.claims.parts;
     chosen.index = static_cast<size_t>(std::ranges::find_if(parts, has_colors) - parts.begin());
     if (chosen.index == parts.size())
-        refuse(where, "the image has none of the channels R, G, B and Y, but " + some_channels(parts[0]));
+        refuse(where, "the image has no channel R, G, B or Y; it has " + some_channels(parts[0]));
     const ExrPartClaims& part = chosen.part();
-    if (part.cube) refuse(where, "the image is a cube map; exrenvmap makes a latitude-longitude map of it");
+    if (part.cube) refuse(where, "the image is a cube map; convert it to latitude-longitude with exrenvmap");
     const ivec2 display = part.display_high - part.display_low + 1;
     if (std::max(display.x, display.y) > largest_picture_side)
         refuse(where, "the display window is larger than 16384 x 16384 pixels");
     const auto area = [](ivec2 size) { return int64_t{size.x} * size.y; };
     if (area(display) > 16 * area(part.high - part.low + 1) + (1 << 20))
-        refuse(where, "the pixels fill less than a sixteenth of the display window");
+        refuse(where, "the data window covers less than 1/16 of the display window");
     return chosen;
 }
 
@@ -107,8 +107,9 @@ ExrPicture decode_exr_picture(std::string_view bytes, const std::string& where) 
     const bool chroma = has_chroma(part);
     for (const char* name : {"R", "G", "B", "Y"})
         if (const ExrChannelClaim* channel = channel_of(part, name); channel && channel->step != 1)
-            refuse(where, std::string("the channel ") + name + " has a value for each second pixel only");
-    if (chroma && chosen.claims.multipart) refuse(where, "luminance and chroma are read from files of one part only");
+            refuse(where, std::string("the channel ") + name + " is subsampled; full resolution is required");
+    if (chroma && chosen.claims.multipart)
+        refuse(where, "luminance and chroma are supported only in single-part files");
     check_exr_blocks(bytes, chosen.claims, chosen.index, where);
 
     ExrPicture picture{part.display_high - part.display_low + 1, part.low - part.display_low,

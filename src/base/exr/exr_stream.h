@@ -38,7 +38,7 @@ template<class Body> auto guarded_exr(const std::string& file, const Body& body)
     } catch (const Error&) {
         throw;
     } catch (const std::exception&) {
-        refuse(file, "the file is cut off or damaged"); // the library's message exposes its internals
+        refuse(file, "the file is truncated or damaged"); // the library's message exposes its internals
     }
 }
 }

@@ -60,20 +60,20 @@ std::shared_ptr<const CacheFile> open_cache_file(const std::filesystem::path& pa
     std::memcpy(&header, bytes.data(), sizeof header);
     if (std::string_view(header.magic.data(), header.magic.size()) != magic ||
         text(header.header_hash) != hash_of_header(header))
-        refuse_damaged(path, "its header is not what was written");
-    if (text(header.made_from) != made_from) refuse_damaged(path, "it holds another thing than its name says");
+        refuse_damaged(path, "its header is corrupt");
+    if (text(header.made_from) != made_from) refuse_damaged(path, "its content does not match its name");
     file->body = bytes.substr(sizeof header);
-    if (header.body_bytes != file->body.size()) refuse_damaged(path, "it is not as long as its header says");
+    if (header.body_bytes != file->body.size()) refuse_damaged(path, "its size does not match its header");
     file->hash = text(header.body_hash), file->seconds = header.seconds;
     return file;
 }
 
 void check_body(const CacheFile& file) {
-    if (content_hash(file.body) != file.hash) refuse_damaged(file.file.path(), "its bytes are not those written");
+    if (content_hash(file.body) != file.hash) refuse_damaged(file.file.path(), "its checksum does not match");
 }
 
 const char* CacheReader::take(size_t count, size_t size) {
-    if (count > (file_->body.size() - at_) / size) refuse_damaged(file_->file.path(), "it ends too early");
+    if (count > (file_->body.size() - at_) / size) refuse_damaged(file_->file.path(), "its data ends early");
     const char* bytes = file_->body.data() + at_;
     at_ += count * size;
     return bytes;
@@ -86,6 +86,6 @@ size_t CacheReader::take_size() {
 }
 
 void CacheReader::finish() const {
-    if (at_ != file_->body.size()) refuse_damaged(file_->file.path(), "it holds more than it should");
+    if (at_ != file_->body.size()) refuse_damaged(file_->file.path(), "it has extra data at its end");
 }
 }

@@ -16,8 +16,8 @@ std::string made_from_of(const std::string& name) { // the 32 digits before the 
 void check_size(const std::filesystem::path& path, uint64_t size, const CacheEntry& entry) {
     if (size != entry.stamp.size)
         fail(ExitCode::unreadable, path.string(),
-             formatted("is cut: %llu of %llu bytes are there; prepare again", static_cast<unsigned long long>(size),
-                       static_cast<unsigned long long>(entry.stamp.size)));
+             formatted("is truncated or was replaced: has %llu of %llu bytes; prepare again",
+                       static_cast<unsigned long long>(size), static_cast<unsigned long long>(entry.stamp.size)));
 }
 
 std::shared_ptr<const CacheFile> opened(const std::filesystem::path& path, const std::string& name,
@@ -27,7 +27,7 @@ std::shared_ptr<const CacheFile> opened(const std::filesystem::path& path, const
     if (entry.hash.empty())
         check_body(*file);
     else if (file->hash != entry.hash)
-        refuse(path.string(), "is another file than was prepared: prepare again");
+        refuse(path.string(), "is not the file that was prepared: prepare again");
     return file;
 }
 

@@ -55,7 +55,8 @@ fs::path final_path(const fs::path& path) {
 void check_final_name(const fs::path& path) {
     if (!path.has_filename() || path.filename() == "." || path.filename() == "..")
         fail(ExitCode::unwritable, path.string(), "is not a file name");
-    if (path.native().find('\0') != std::string::npos) fail(ExitCode::unwritable, path.string(), "holds a zero byte");
+    if (path.native().find('\0') != std::string::npos)
+        fail(ExitCode::unwritable, path.string(), "contains a zero byte");
     struct stat info;
     if (stat(path.c_str(), &info) != 0) {
         if (errno != ENOENT) fail(ExitCode::unwritable, path.string(), std::strerror(errno));
@@ -118,7 +119,7 @@ void check_output(const fs::path& path) {
     const fs::path target = final_path(path);
     std::error_code error;
     if (target.has_parent_path()) fs::create_directories(target.parent_path(), error);
-    if (error) fail(ExitCode::unwritable, path.string(), "cannot make its directory: " + error.message());
+    if (error) fail(ExitCode::unwritable, path.string(), "cannot create its directory: " + error.message());
     check_final_name(target);
     Temporary temporary(target);
 }

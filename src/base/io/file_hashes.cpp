@@ -21,7 +21,7 @@ std::string hash_of_file(const std::filesystem::path& path) {
         stream.read(piece.data(), static_cast<std::streamsize>(piece.size()));
         hashes += content_hash(std::string_view(piece).substr(0, static_cast<size_t>(stream.gcount())));
     }
-    if (stream.bad() || !stream.eof()) fail(ExitCode::unreadable, path.string(), "cannot be read to its end");
+    if (stream.bad() || !stream.eof()) fail(ExitCode::unreadable, path.string(), "cannot be read to the end");
     return content_hash(hashes);
 }
 }

@@ -87,7 +87,7 @@ FileSequence find_sequence(const std::string& pattern, const fs::path& base_dire
         if (parse_name(entries->path().filename().string(), name, parts, frame)) sequence.files.push_back(frame);
     }
     if (error) fail(ExitCode::unreadable, path.parent_path().string(), error.message());
-    if (sequence.files.empty()) fail(ExitCode::unreadable, sequence.pattern, "no file of this sequence is there");
+    if (sequence.files.empty()) fail(ExitCode::unreadable, sequence.pattern, "no file matches this sequence");
     std::ranges::sort(sequence.files);
     return sequence;
 }
@@ -109,6 +109,6 @@ std::optional<fs::path> sequence_file(const FileSequence& sequence, int frame, M
     if (missing == MissingFrame::skip) return {};
     fail(ExitCode::unreadable, name(*mapped).string(),
          "is missing from a sequence of frames " + std::to_string(sequence.files.front()) + " to " +
-             std::to_string(sequence.files.back()) + "; --missing hold or skip goes on without it");
+             std::to_string(sequence.files.back()) + "; --missing hold or skip continues without it");
 }
 }

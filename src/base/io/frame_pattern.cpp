@@ -61,7 +61,7 @@ Token percent_token(std::string_view pattern, size_t start) {
     const bool padded = at < pattern.size() && pattern[at] == '0';
     const size_t digits = padded ? width(pattern, at) : 1;
     if (at >= pattern.size() || pattern[at] != 'd' || digits == 0)
-        complain(pattern, start, "only %d and %04d stand for a frame number");
+        complain(pattern, start, "only %d and %04d are supported for the frame number");
     return {start, at + 1 - start, digits};
 }
 
@@ -87,7 +87,7 @@ std::optional<Token> find_token(std::string_view pattern) {
         at += token ? token->length : 1;
         if (!token) continue;
         if (token->digits > max_digits) complain(pattern, token->start, "a frame number takes at most 12 digits");
-        if (found) complain(pattern, token->start, "a second place for the frame number");
+        if (found) complain(pattern, token->start, "the name already has a frame number");
         found = token;
     }
     return found;

@@ -64,8 +64,8 @@ Range parse_item(Reader& reader) {
     const size_t step_column = reader.column();
     if (!reader.take('x') && !reader.take(':')) {
         if (last < first)
-            reader.complain(start, "the range runs backwards; " + std::to_string(first) + "-" + std::to_string(last) +
-                                       "x-1 counts down");
+            reader.complain(start, "the range runs backwards; count down with " + std::to_string(first) + "-" +
+                                       std::to_string(last) + "x-1");
         return {first, last, 1};
     }
     const int64_t step = reader.integer("a step");

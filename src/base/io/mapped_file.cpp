@@ -59,7 +59,8 @@ WatchedRange* watched(const void* memory, size_t size, const std::string& file) 
     while (range && range->begin) range = range->next;
     const bool fresh = !range;
     if (fresh) range = new WatchedRange;
-    range->line = "tyndall: error: " + printable(file, 400) + ": was cut, or its disk is gone, while it was in use\n";
+    range->line = "tyndall: error: " + printable(file, 400) +
+                  ": was truncated, or its disk became unavailable, while it was in use\n";
     range->size = size, range->begin = static_cast<const char*>(memory);
     if (fresh) range->next = ranges, ranges = range;
     return range;

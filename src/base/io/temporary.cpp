@@ -94,7 +94,7 @@ Temporary::Temporary(const std::filesystem::path& path) : final_(path) {
         descriptor_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
         if (descriptor_ < 0 && errno != EEXIST && errno != EINTR) break;
     }
-    if (descriptor_ < 0) fail_with("cannot make a file in its directory");
+    if (descriptor_ < 0) fail_with("cannot create a file in its directory");
     exists_ = true;
     struct stat info;
     if (fstat(descriptor_, &info) == 0) device_ = info.st_dev, inode_ = info.st_ino;

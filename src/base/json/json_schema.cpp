@@ -11,7 +11,7 @@ constexpr size_t longest_string = 10000;
 
 void check_string(const std::string& text, const std::string& pointer, std::string_view file) {
     if (text.size() > longest_string)
-        refuse(json_place(file, pointer), "a text of " + std::to_string(text.size()) + " bytes; at most " +
+        refuse(json_place(file, pointer), "a string of " + std::to_string(text.size()) + " bytes; at most " +
                                               std::to_string(longest_string) + " are allowed");
 }
 

@@ -56,7 +56,7 @@ std::string meant_value(const Json& value, const std::vector<const Json*>& allow
 }
 
 std::string unknown_key(const std::string& key, const std::vector<std::string>& known, const Json& root) {
-    if (known.empty()) return "unknown key; none is known here";
+    if (known.empty()) return "unknown key; no keys are allowed here";
     if (const auto meant = meant_by(key, known, root); !meant.empty())
         return "unknown key; did you mean " + joined(meant, " or ") + "?";
     const auto longer_form = [wanted = lowered(key)](const std::string& name) {
@@ -68,7 +68,7 @@ std::string unknown_key(const std::string& key, const std::vector<std::string>& 
         return "unknown key; did you mean " + quote_json(*match) + "?";
     const std::string nearest = nearest_name(lowered(key), known);
     if (looks_like(key, nearest)) return "unknown key; did you mean " + quote_json(nearest) + "?";
-    return "unknown key; known here: " + quoted_list(known);
+    return "unknown key; allowed here: " + quoted_list(known);
 }
 
 namespace {
@@ -208,7 +208,7 @@ Problem union_problem(const Json& value, const Json& schema, const Json& root, c
         if (fitting.empty()) return likeliest_problem(value, std::move(failing), root, pointer);
         if (fitting.size() == 1 || keyword == std::string_view("anyOf")) continue;
         const std::string what = required_choice(fitting, "takes only one of ");
-        return SchemaProblem{pointer, what.empty() ? "fits several of the allowed forms at once" : what};
+        return SchemaProblem{pointer, what.empty() ? "matches more than one of the allowed forms" : what};
     }
     return {};
 }

@@ -17,7 +17,7 @@ std::string_view set_isa(std::string_view name) {
     if (name != "auto") {
         const int64_t target = name == "avx2" ? HWY_AVX2 : HWY_AVX3;
         if (!(hwy::SupportedTargets() & target))
-            fail(ExitCode::usage, "--isa", "this machine has no " + std::string(name));
+            fail(ExitCode::usage, "--isa", "this machine does not support " + std::string(name));
         hwy::SetSupportedTargetsForTest(target);
     }
     return isa_name();

@@ -153,7 +153,7 @@ void render_references(ChartStage& stage, References& references, Chart& chart, 
 // Drops modes that are compared by the light of lamps and suns alone when the scene has none.
 ChartJob job_for(const Scene& scene, ChartJob job, const ChartControl& control) {
     if (!scene.lights.empty() || !wants_unlit(job)) return job;
-    const std::string why = "path takes no part: it is held against the light of lamps and suns, and there are none";
+    const std::string why = "path is skipped: it is compared by the light of lamps and suns, and the scene has none";
     std::erase_if(job.modes, [](const Mode* mode) { return lights_only(*mode); });
     if (job.modes.empty()) fail(ExitCode::usage, "--modes", why);
     if (control.remark) control.remark(why);
@@ -173,7 +173,7 @@ std::vector<ChartedMode> charted_modes(const ChartStage& stage) {
 }
 
 std::string line_on(const ChartPoint& point) {
-    return formatted("%-14s %3d rays a pixel  %8.4f s  error %.4f", point_name(point).c_str(),
+    return formatted("%-14s %3d rays per pixel  %8.4f s  error %.4f", point_name(point).c_str(),
                      static_cast<int>(point.samples), point.seconds_1, point.errors.error);
 }
 
@@ -198,7 +198,7 @@ std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& referen
         }
         chart.left_out.push_back({std::string(rung.mode->name), rows_of(settings_of(rung)), rung.place, task.seconds});
         if (control.remark && !goes_on)
-            control.remark(formatted("%s.%d and what follows it are left out: an image would take about %.2g s",
+            control.remark(formatted("%s.%d and the settings after it are skipped: an image would take about %.2g s",
                                      std::string(rung.mode->name).c_str(), rung.place, task.seconds));
     }
     return tasks;

@@ -50,9 +50,9 @@ std::string advice_table(const Chart& chart) {
                 answer_cell(advice.single, FrameTime::single, ErrorOf::worse) +
                 answer_cell(advice.sequence, FrameTime::sequence, ErrorOf::worse) +
                 answer_cell(advice.fog, FrameTime::single, ErrorOf::fog) + "</tr>\n";
-    return "<table><thead><tr><th>wanted</th><th class=\"words\">by E, for a single frame</th>"
+    return "<table><thead><tr><th>goal</th><th class=\"words\">by E, for a single frame</th>"
            "<th class=\"words\">by E, for each of 100 frames</th><th class=\"words\">by the fog light at pixel "
-           "centres, "
+           "centers, "
            "for a single frame</th></tr></thead><tbody>\n" +
            rows + "</tbody></table>\n";
 }
@@ -73,7 +73,7 @@ struct Column {
 const std::vector<Column>& columns() {
     using P = ChartPoint;
     static const std::vector<Column> all{
-        {"rays a pixel", [](const P& p) { return number_words(p.samples); }},
+        {"rays per pixel", [](const P& p) { return number_words(p.samples); }},
         {"set-up", [](const P& p) { return seconds_words(p.setup_seconds); }},
         {"frame", [](const P& p) { return seconds_words(p.frame_seconds); }},
         {"fastest to slowest",
@@ -83,18 +83,18 @@ const std::vector<Column>& columns() {
         {"processor time", [](const P& p) { return seconds_words(p.cpu_seconds); }},
         {"memory", [](const P& p) { return bytes_words(p.memory_bytes); }},
         {"error E", [](const P& p) { return share_words(p.errors.error); }},
-        {"uncertain by", [](const P& p) { return share_words(p.errors.uncertainty); }},
+        {"uncertainty", [](const P& p) { return share_words(p.errors.uncertainty); }},
         {"rmse_rel", [](const P& p) { return share_words(p.errors.rmse); }},
         {"rmse_rel of the fog light", [](const P& p) { return share_words(p.errors.inscatter_rmse); }},
-        {"fog light at pixel centres", [](const P& p) { return share_words(p.fog_error); }},
+        {"fog light at pixel centers", [](const P& p) { return share_words(p.fog_error); }},
         {"bias", [](const P& p) { return share_words(p.errors.bias); }},
         {"relMSE", [](const P& p) { return number_words(p.errors.rel_mse); }},
         {"FLIP", [](const P& p) { return number_words(p.errors.flip); }},
         {"flicker", [](const P& p) { return share_words(p.flicker); }},
         {"fitted gain", [](const P& p) { return number_words(p.gain); }},
-        {"E with it", [](const P& p) { return share_words(p.fitted.error); }},
-        {"fog light at pixel centres with it", [](const P& p) { return share_words(p.fitted_fog_error); }},
-        {"FLIP with it", [](const P& p) { return number_words(p.fitted.flip); }},
+        {"E with gain", [](const P& p) { return share_words(p.fitted.error); }},
+        {"fog light at pixel centers with gain", [](const P& p) { return share_words(p.fitted_fog_error); }},
+        {"FLIP with gain", [](const P& p) { return number_words(p.fitted.flip); }},
         {"unbeaten", [](const P& p) { return std::string(p.best_1 > 0 ? "yes" : "-"); }},
     };
     return all;
@@ -144,14 +144,14 @@ std::string gallery(const Chart& chart) {
 std::string summary(const Chart& chart) {
     return "Frame " + std::to_string(chart.job.frame) + ", camera " + xml_text(chart.camera) + ", " +
            size_words(chart.size) + " pixels, " + std::to_string(chart.threads) + " threads, " + xml_text(chart.isa) +
-           formatted(". Load of the machine: %.1f before, %.1f after. Light scatters once everywhere.",
-                     chart.load_before, chart.load_after);
+           formatted(". Machine load: %.1f before, %.1f after. All modes render single scattering.", chart.load_before,
+                     chart.load_after);
 }
 
 std::string reference_words(const ReferenceSamples& reference) {
-    if (reference.count > 0) return std::to_string(reference.count / 2) + " rays a pixel each";
-    return "as many rays as a noise of " + share_words(reference.noise) + " asks for, or " +
-           seconds_words(reference.seconds) + " each allow";
+    if (reference.count > 0) return std::to_string(reference.count / 2) + " rays per pixel each";
+    return "as many rays as a noise of " + share_words(reference.noise) + " needs, but at most " +
+           seconds_words(reference.seconds) + " each";
 }
 
 std::string method(const Chart& chart) {
@@ -160,27 +160,27 @@ std::string method(const Chart& chart) {
         "Reference: <code>march</code> with exact shadows and light followed through the fog, two independent halves "
         "of " +
             reference_words(job.reference) + "; their noise (" + share_words(chart.reference_noise) +
-            " of the mean) is taken out of the errors. FLIP still sees it: " + number_words(chart.reference_flip) +
-            " between the halves.",
+            " of the mean) is subtracted from the errors. FLIP still includes it: " +
+            number_words(chart.reference_flip) + " between the halves.",
         "Error E: root of the mean squared difference / mean of the reference, of the image or of the light of its "
         "fog alone, whichever is larger. 100 % is an error as large as the mean.",
         "Times: wall clock, median of at least " + std::to_string(job.runs) +
-            " runs. Set-up is what the first frame takes to prepare on top of what the next one takes, which keeps "
-            "what stands still; what is made once from a scene's triangles counts as loading.",
-        "Memory: the most that a frame takes on top of the scene; what the program had free before does not show.",
-        "Flicker: change from frame to frame that the reference lacks / its mean, over " +
+            " runs. Set-up is the time the first frame needs beyond the next one, which reuses what does not "
+            "move; what is built once from a scene's triangles counts as loading.",
+        "Memory: the peak of a frame on top of the scene; memory the program had free before is not counted.",
+        "Flicker: changes between frames that the reference does not have / its mean, over " +
             std::to_string(job.sequence) + " frames of " + size_words(chart.sequence_size) +
-            " pixels at pixel centres" +
-            (chart.moves ? "." : "; the scene has no more frames, so time stands still in them.") +
+            " pixels at pixel centers" +
+            (chart.moves ? "." : "; the scene has no more frames, so nothing moves in them.") +
             " Modes start each frame without history.",
-        "Fog light at pixel centres: every ray of a pixel goes through its centre, in the reference too. What is left "
+        "Fog light at pixel centers: every ray of a pixel goes through its center, in the reference too. What remains "
         "is the technique's own error and noise.",
-        "The artistic modes (<code>billboard</code>, <code>radial-blur</code>) promise no light: they are shown as "
-        "they come, and again, dashed and hollow, with their fog light multiplied by the one number that fits best.",
+        "The artistic modes (<code>billboard</code>, <code>radial-blur</code>) do not promise correct light: they are "
+        "shown as rendered, and again, dashed and hollow, with their fog light scaled by the best-fitting factor.",
         "<code>path</code> scatters light once here and is measured by the light of lamps and suns; ambient light, "
-        "which it shadows and the reference does not, is left out on both sides.",
-        "The grey steps join what no other setting beats in both time and error. Whiskers: the fastest and the slowest "
-        "run; two standard deviations of what the reference's noise leaves unknown."};
+        "which it shadows and the reference does not, is excluded on both sides.",
+        "The grey steps join the settings that no other beats in both time and error. Whiskers: the fastest and the "
+        "slowest run; two standard deviations of the uncertainty from the reference's noise."};
     std::string list;
     for (const std::string& text : lines) list += element("li", text);
     return element("ul", list);
@@ -195,12 +195,11 @@ std::string chart_html(const Chart& chart) {
                        std::string(chart_page_style) + std::string(chart_svg_style) + "</style></head><body>\n";
     html += element("h1", title) + element("p", summary(chart)) + chart_svg(chart, FrameTime::single, ErrorOf::worse);
     html += element("h2", "What to use when") + advice_table(chart) + left_out(chart);
-    html +=
-        element("h2", "The technique alone") +
-        element("p class=\"quiet\"",
-                "The light of the fog at pixel centres: edges of surfaces and lamps inside of pixels, which need many "
-                "rays a pixel in every mode, do not count here.") +
-        chart_svg(chart, FrameTime::single, ErrorOf::fog);
+    html += element("h2", "The technique alone") +
+            element("p class=\"quiet\"",
+                    "The light of the fog at pixel centers: edges of surfaces and lamps inside pixels, which need many "
+                    "rays per pixel in every mode, do not count here.") +
+            chart_svg(chart, FrameTime::single, ErrorOf::fog);
     html += element("h2", "In a sequence") + chart_svg(chart, FrameTime::sequence, ErrorOf::worse);
     html += element("h2", "Images and where they are wrong") +
             element("p class=\"quiet\"", "Below each image its error at every pixel, as a share of the mean: black "

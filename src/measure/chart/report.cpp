@@ -93,7 +93,7 @@ std::string bytes_words(double bytes) {
 
 std::string need_words(const Advice& advice) {
     if (advice.error > 0) return "an error of at most " + share_words(advice.error);
-    return "at most " + seconds_words(advice.seconds) + " a frame";
+    return "at most " + seconds_words(advice.seconds) + " per frame";
 }
 
 std::string chart_csv(const Chart& chart) {
@@ -138,11 +138,12 @@ std::string chart_json(const Chart& chart) {
 
 std::string left_out_reason(const Chart& chart) {
     if (chart.left_out.empty()) return {};
-    std::string text = count_text(chart.left_out.size(), "setting") + " left out: an image would take more than " +
+    std::string text = count_text(chart.left_out.size(), "setting") + " skipped: an image would take more than " +
                        seconds_words(chart.job.longest) + " (--longest)";
     if (was_loaded(chart))
-        text += formatted("; other work was running (load %.1f on %d threads), without it more of them may fit",
-                          chart.load_before, chart.threads);
+        text +=
+            formatted("; other processes were running (load %.1f on %d threads), without them more settings may fit",
+                      chart.load_before, chart.threads);
     return text;
 }
 

@@ -134,7 +134,7 @@ std::string grid(const Frame& frame) {
                                                              : "time of each of 100 frames, set-up shared among them";
     svg += text((left + right) / 2, bottom + 46, "axis", what, " text-anchor='middle'");
     const double middle = (top + bottom) / 2;
-    const char* error = frame.what == ErrorOf::worse ? "error E" : "error of the fog light at pixel centres";
+    const char* error = frame.what == ErrorOf::worse ? "error E" : "error of the fog light at pixel centers";
     return svg + text(17, middle, "axis", std::string(error) + " / mean",
                       " text-anchor='middle' transform='rotate(-90 17 " + n(middle) + ")'");
 }
@@ -282,7 +282,7 @@ std::string legend(const Drawing& drawing, double& end) {
     end = at.y + legend_row + 5;
 
     std::string over;
-    for (const std::string& words : drawing.over) over += (over.empty() ? "over the break: " : ", ") + words;
+    for (const std::string& words : drawing.over) over += (over.empty() ? "above the break: " : ", ") + words;
     std::istringstream lines(wrapped(over, 84, 0));
     for (std::string words; std::getline(lines, words); end += 19)
         svg += text(left - 60 - 6, end, "tick", xml_text(words));

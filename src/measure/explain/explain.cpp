@@ -155,7 +155,7 @@ double difference(const Answer& answer, const Answer& reference) {
 }
 
 std::string_view name_of(Lighting state) {
-    constexpr std::string_view names[] = {"lit", "half shadow", "shadow", "out of reach"};
+    constexpr std::string_view names[] = {"lit", "penumbra", "shadow", "out of reach"};
     return names[static_cast<size_t>(state)];
 }
 

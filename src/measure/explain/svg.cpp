@@ -92,8 +92,8 @@ void draw_fog(const RayStory& story, double top, Interval<double> range, Svg& sv
 void draw_transmittance(const RayStory& story, std::span<const size_t> lights, double top, Interval<double> range,
                         Svg& svg) {
     const Panel panel{top, top + 130, range, 1};
-    draw_axes(panel, "Light that gets through the fog: from here to the eye (black), from each light to here (colour)",
-              true, false, svg);
+    draw_axes(panel, "Transmittance of the fog: from here to the camera (black), from each light to here (color)", true,
+              false, svg);
     for (size_t i = 0; i < lights.size(); ++i) {
         const LightOnRay& light = story.lights[lights[i]];
         const std::vector<Lighting> states = states_of(story, light);
@@ -109,8 +109,8 @@ void draw_light(const RayStory& story, std::span<const size_t> lights, double to
     const double scale = light_scale(story, most);
     const Panel panel{top, top + 150, range, scale};
     std::string title =
-        "Light scattered here that arrives at the eye, nits per metre (grey: ambient light and emission)";
-    if (most > 1.1 * scale) title += formatted("; cut off, up to %.3g", most);
+        "Light scattered here that arrives at the camera, nits per metre (grey: ambient light and emission)";
+    if (most > 1.1 * scale) title += formatted("; clipped, up to %.3g", most);
     draw_axes(panel, title, false, false, svg);
     svg.path(curve(story, panel, [&](size_t s) { return arriving(story.steps[s], story.steps[s].glow); }), fog_color,
              1.2);
@@ -151,7 +151,7 @@ void draw_stretch(const Panel& panel, const LightStretch& stretch, double y, con
 double draw_lit(const RayStory& story, std::span<const size_t> lights, double top, Interval<double> range, Svg& svg) {
     const Panel panel{top, top + 24 * static_cast<double>(lights.size()) + 4, range, 1};
     std::string title =
-        "Where each light shines: colour lit, pale half shadow, dark in the shadow of what is named, line "
+        "Where each light shines: color lit, pale penumbra, dark in the shadow of the named object, line "
         "out of reach";
     if (lights.size() < story.lights.size())
         title += formatted(" (%zu of %zu lights)", lights.size(), story.lights.size());
@@ -163,7 +163,7 @@ double draw_lit(const RayStory& story, std::span<const size_t> lights, double to
                  formatted("fill='%s'", light_colors[i]).c_str());
         for (const LightStretch& stretch : light.stretches) draw_stretch(panel, stretch, y, light_colors[i], svg);
     }
-    svg.text(0.5 * (left + right), panel.bottom + 32, "distance from the eye, m", Anchor::middle);
+    svg.text(0.5 * (left + right), panel.bottom + 32, "distance from the camera, m", Anchor::middle);
     return panel.bottom + 40;
 }
 

@@ -33,9 +33,9 @@ double draw_modes(const RayStory& story, double top, Svg& svg) {
     for (const Answer& answer : story.answers) most = std::max<double>(most, luminance(answer.inscatter));
     double scale = exact > 0 ? std::min(1.02 * most, 2.5 * exact) : most;
     if (!(scale > 0)) scale = 1;
-    svg.text(left, top, "What each mode makes of it", Anchor::start, "font-weight='bold'");
+    svg.text(left, top, "What each mode renders", Anchor::start, "font-weight='bold'");
     const std::pair<double, const char*> heads[] = {
-        {560, "nits"}, {710, "off the reference"}, {800, "through"}, {890, "valid"}, {980, "steps"}};
+        {560, "nits"}, {710, "error"}, {800, "through"}, {890, "valid"}, {980, "steps"}};
     for (const auto& [x, head] : heads) svg.text(x, top, head, Anchor::end, "fill='#666'");
     double y = top + 8;
     draw_answer(story.reference, nullptr, y, scale, svg);

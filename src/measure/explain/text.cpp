@@ -52,11 +52,11 @@ double length_of(const LightOnRay& light, Lighting state) {
 
 std::string lights_text(const RayStory& story) {
     std::string text = "Light that reaches the camera, nits (other: ambient light, emission, background)\n";
-    text += formatted("  %-16s %-5s %29s %29s\n", "", "", "scattered by fog", "reflected by surfaces");
-    text += formatted("  %-16s %-5s %s %s %8s\n", "", "", channels().c_str(), channels().c_str(), "lit, m");
+    text += formatted("  %-16s %-9s %29s %29s\n", "", "", "scattered by fog", "reflected by surfaces");
+    text += formatted("  %-16s %-9s %s %s %8s\n", "", "", channels().c_str(), channels().c_str(), "lit, m");
     const auto row = [&](const std::string& name, std::string_view kind, vec3 fog, vec3 surfaces,
                          const std::string& lit) {
-        text += formatted("  %-16s %-5s %s %s %8s\n", cut(printable(name, 40), 16).c_str(), std::string(kind).c_str(),
+        text += formatted("  %-16s %-9s %s %s %8s\n", cut(printable(name, 40), 16).c_str(), std::string(kind).c_str(),
                           color_columns(fog).c_str(), color_columns(surfaces).c_str(), lit.c_str());
     };
     vec3 of_lights(0);

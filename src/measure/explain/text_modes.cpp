@@ -39,8 +39,8 @@ std::string limitations_text(const RayStory& story) {
 }
 
 std::string modes_text(const RayStory& story) {
-    std::string text = "What each mode gives: fog light of one sample at the pixel's centre, nits\n";
-    text += formatted("  %-14s %s %19s %9s %8s %8s\n", "", channels().c_str(), "off", "through", "valid", "steps");
+    std::string text = "What each mode gives: fog light of one sample at the pixel's center, nits\n";
+    text += formatted("  %-14s %s %19s %9s %8s %8s\n", "", channels().c_str(), "error", "through", "valid", "steps");
     text += answer_text(story.reference, nullptr);
     for (const Answer& answer : story.answers) text += answer_text(answer, &story.reference);
     for (const Answer& answer : story.answers)

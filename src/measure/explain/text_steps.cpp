@@ -100,7 +100,7 @@ std::string steps_text(const RayStory& story) {
     const double all = luminance(vec3(sum)), exact = luminance(story.reference.inscatter);
     text += formatted("  %zu steps add up to %s, the reference is %s", story.steps.size(), digits(all).c_str(),
                       digits(exact).c_str());
-    if (exact > 0) text += formatted(": off by %.2f %%", 100 * std::abs(all / exact - 1));
+    if (exact > 0) text += formatted(": error %.2f %%", 100 * std::abs(all / exact - 1));
     return text + "\n";
 }
 }

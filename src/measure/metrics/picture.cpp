@@ -27,7 +27,7 @@ Image<vec3> color_of(const Channels& channels) {
     for (const auto& [layer, channels] : layers)
         for (const auto& channel : channels) names.push_back((layer.empty() ? "" : layer + ".") + channel.first);
     refuse(file,
-           "has no colour to compare: neither channels R, G, B nor Y; there is " + printable(joined(names, ", "), 200));
+           "has no color to compare: neither channels R, G, B nor Y; it has " + printable(joined(names, ", "), 200));
 }
 
 std::string size_text(ivec2 size) { return std::to_string(size.x) + " x " + std::to_string(size.y); }
@@ -73,13 +73,13 @@ Picture read_picture(const std::filesystem::path& file) {
 void check_same_frame(const Picture& test, const Picture& reference) {
     const std::string other = "the reference " + printable(reference.file, 120);
     if (test.display != reference.display)
-        refuse(test.file, "is an image of " + size_text(test.display) + " pixels, " + other + " one of " +
-                              size_text(reference.display));
+        refuse(test.file,
+               "has " + size_text(test.display) + " pixels, " + other + " has " + size_text(reference.display));
     if (test.low != reference.low || test.beauty.size != reference.beauty.size)
-        refuse(test.file, "holds the crop " + window_text(test) + ", " + other + " " + window_text(reference) +
-                              "; render both with the same --crop");
+        refuse(test.file, "contains the crop " + window_text(test) + ", " + other + " the crop " +
+                              window_text(reference) + "; render both with the same --crop");
     if (test.grey != reference.grey)
-        refuse(test.file, std::string(test.grey ? "has luminance only, " : "has colour, ") + other +
-                              (test.grey ? " colour" : " luminance only"));
+        refuse(test.file, std::string(test.grey ? "has luminance only, " : "has color, ") + other +
+                              (test.grey ? " has color" : " has luminance only"));
 }
 }

@@ -43,14 +43,14 @@ std::optional<LimitationGroup> worst_of(const Limitations& limitations) {
 std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const Limitations& limitations) {
     if (best.gets_there() && goal.error > 0) {
         const double ratio = best.seconds / winner.seconds;
-        if (ratio < 1 && best.risk > 0) return "may reach it in " + seconds_text(best.seconds) + ", or miss it";
-        return "reaches it in " + seconds_text(best.seconds) +
+        if (ratio < 1 && best.risk > 0) return "may reach the target in " + seconds_text(best.seconds) + ", or miss it";
+        return "reaches the target in " + seconds_text(best.seconds) +
                (ratio < 1.1 ? ", about as long" : formatted(", %.*f times as long", ratio < 10 ? 1 : 0, ratio));
     }
     std::string text =
-        goal.error > 0 ? "stays " + percent_text(best.error) + " off" : percent_text(best.error) + " off";
+        goal.error > 0 ? "error stays at " + percent_text(best.error) : percent_text(best.error) + " error";
     if (goal.error > 0 && !best.gets_there() && best.error < goal.error)
-        text = "too noisy: takes more than " + formatted("%.0f", 1.0 * max_target_samples) + " samples per pixel";
+        text = "too noisy: needs more than " + formatted("%.0f", 1.0 * max_target_samples) + " samples per pixel";
     if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
         text += ", in " + seconds_text(best.seconds) + " at least";
     if (const auto worst = worst_of(limitations)) text += "; " + where_of(*worst) + ": " + sentence_of(worst->worst);
@@ -72,8 +72,8 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
                             : "not tried: errors here are of single scattering, and it traces all orders (--mode path)";
         else if (mode.accuracy != Accuracy::artistic)
             standing.why = contest.best().mode->accuracy == Accuracy::multiple_scattering
-                               ? "not tried: its multiple scattering is further off than the error asked for"
-                               : "not tried: it has no multiple scattering, which is asked for";
+                               ? "not tried: its multiple scattering misses the target error"
+                               : "not tried: it has no multiple scattering, which was requested";
         for (const Contender& contender : contest.contenders)
             if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))
                 standing.best = contender;
@@ -164,7 +164,7 @@ std::string Plan::certificate() const {
     std::string text = std::string(chosen.mode->name);
     if (!chosen.choice.candidate.name.empty()) text += " (" + chosen.choice.candidate.name + ")";
     text += ": error " + percent_text(expected_error()) + (chosen.gets_there() ? " expected" : " at best");
-    if (goal.error > 0) text += ", " + percent_text(goal.error) + " wanted";
+    if (goal.error > 0) text += ", target " + percent_text(goal.error);
     if (goal.seconds > 0) text += ", in " + seconds_text(goal.seconds);
     std::string left_out;
     for (const Term& term : terms)
@@ -173,13 +173,13 @@ std::string Plan::certificate() const {
                         " (" + term.simpler + ": at most " + percent_text(term.bound) +
                         (term.rigorous ? " for certain)" : ")");
     if (orders)
-        text += "; multiple scattering from a grid is " + percent_text(orders->pixels.error) + " (at most " +
-                percent_text(orders->pixels.bound) + ") off path tracing";
+        text += "; multiple scattering from a grid differs by " + percent_text(orders->pixels.error) + " (at most " +
+                percent_text(orders->pixels.bound) + ") from path tracing";
     return text + (left_out.empty() ? "" : "; not needed: " + left_out);
 }
 
 std::string plan_text(const Plan& plan) {
-    std::string text = "what the light needs                              without it\n";
+    std::string text = "terms of the light                                without it\n";
     for (const Term& term : plan.terms) {
         const std::string name = term.name + (term.where.empty() ? "" : " of " + term.where);
         text += formatted("  %-6s  %-38.38s  %-10s  %s\n", term.needed ? "needed" : "-", name.c_str(),

@@ -101,7 +101,8 @@ struct Terms {
         if (bound <= allowed) {
             term.error = term.bound = bound, term.rigorous = true, term.needed = false;
             if (term.why.empty())
-                term.why = bound == 0 ? "there is none" : "no pixel is off by more than " + percent_text(most);
+                term.why =
+                    bound == 0 ? "no effect in this scene" : "no pixel changes by more than " + percent_text(most);
         } else {
             const SquaredError seen = error_of((this->*against)(), variant());
             term.error = std::sqrt(seen.value), term.bound = std::sqrt(seen.bound);
@@ -132,9 +133,9 @@ void add_shadows(Terms& terms) {
         Term term{"shadows", light.name, "left out"};
         const bool blocked = shadow_casters(light, terms.snapshot) != nullptr;
         if (!light.shadows)
-            term.why = "the scene says it casts none";
+            term.why = "shadows are off for this light in the scene";
         else if (!blocked)
-            term.why = "there is nothing that could cast them";
+            term.why = "nothing in the scene could cast them";
         terms.add(term, blocked ? infinity : 0, &Terms::usual, [&] {
             Variant variant = terms.changed();
             variant.snapshot = without_shadows(std::move(variant.snapshot), i);
@@ -212,7 +213,7 @@ void add_orders(Terms& terms) {
                   percent_text(found.low).c_str(), percent_text(found.high).c_str());
     const double bound = truncation_bound(terms.snapshot, 1);
     if (bound < 1) term.why += formatted("; never more than %s of the brightest", percent_text(bound).c_str());
-    if (terms.base.fluence.orders < 2) term.why += "; left out without --orders all";
+    if (terms.base.fluence.orders < 2) term.why += "; ignored without --orders all";
     terms.terms.push_back(std::move(term));
 }
 }

@@ -80,7 +80,7 @@ std::vector<StressCase> stress_beams() {
     return {
         StressCase("cut-off", group, "the edge of an IES profile gets sharp", "edge", "degrees", {20, 5, 0.5},
                    Claim::physical, excuses, cut_off, usual),
-        StressCase("dark-pole", group, "a profile that is dark ahead: its ring gets thin", "ring", "degrees",
+        StressCase("dark-pole", group, "a profile that is dark along its axis: its ring gets thin", "ring", "degrees",
                    {25, 8, 2}, Claim::physical, excuses, dark_pole, usual),
         StressCase("stripes", group, "the stripes of a gobo get fine", "stripes", "", {2, 8, 32}, Claim::physical,
                    excuses, stripes, usual),

@@ -89,7 +89,7 @@ std::vector<StressCase> stress_colors() {
                    Claim::physical, excuses, in_grey, usual),
         StressCase("colored-shaft", group, "a shaft in colored fog gets narrow", "slit", "m", {2, 0.5, 0.1},
                    Claim::physical, excuses, shaft, usual),
-        StressCase("colored-transmittance", group, "each channel of what lies behind fades by its own depth",
+        StressCase("colored-transmittance", group, "each channel of the background fades by its own optical depth",
                    "optical depth of red", "", {0.1, 1, 5, 30}, Claim::noise_free, {}, before_white,
                    {1e-4, "largest error of a channel", white_off}),
     };

@@ -154,7 +154,7 @@ std::vector<StressCase> stress_data() {
     return {
         StressCase("skewed-grid", group, "a grid stretched, sheared and mirrored", "shear", "", {0, 0.5, 2, -0.5, -2},
                    seen_modes, detail, skewed,
-                   {0.02, "relative RMSE of what fog takes, against the closed form", depth_off}),
+                   {0.02, "relative RMSE of the fog's opacity against the closed form", depth_off}),
         StressCase("voxel-size", group, "voxels from micrometres to kilometres", "size", "times",
                    {10, 1e-3, 1e-4, 1e3, 1e5}, seen_modes, {}, of_size,
                    {0.01, "relative RMSE against the usual size", size_off}),
@@ -172,7 +172,7 @@ std::vector<StressCase> stress_data() {
                    Claim::physical, detail, wisps, {0.1}),
         StressCase("rough-grid", group, "rough fog gets thick", "extinction", "1/m", {0.5, 3, 20, 200}, Claim::physical,
                    detail, rough, {0.1}),
-        StressCase("eye-in-grid", group, "the eye stands in rough fog", "extinction", "1/m", {0.5, 3, 20},
+        StressCase("eye-in-grid", group, "the camera is in rough fog", "extinction", "1/m", {0.5, 3, 20},
                    Claim::physical, detail, in_rough, {0.1}),
         StressCase("shaft-in-grid", group, "a narrow shaft through rough fog", "width", "m", {0.6, 0.2, 0.05},
                    Claim::density, shafts, rough_in_shadow, {0.15}),

@@ -72,7 +72,7 @@ StressScene forward_fog(double g) {
 }
 
 std::vector<StressCase> stress_faces() {
-    constexpr std::string_view group = "faces that shine";
+    constexpr std::string_view group = "area lights";
     const StressMeasure usual = usual_measure();
     return {
         StressCase("rectangle", group, "a rectangle gets huge", "half a side", "m", {0.05, 0.3, 2}, Claim::physical,
@@ -87,13 +87,13 @@ std::vector<StressCase> stress_faces() {
                    {90, 20, 2, 0}, Claim::physical, excuses, edge_on, usual),
         StressCase("face-over-fog", group, "a rectangle comes down to the fog, and into it", "gap", "m",
                    {1, 0.1, 0, -0.3}, Claim::physical, excuses, over_fog, usual),
-        StressCase("eye-at-disc", group, "the eye comes near a disc", "distance", "m", {2, 0.5, 0.05}, Claim::physical,
-                   excuses, eye_in_glow, usual),
+        StressCase("eye-at-disc", group, "the camera comes near a disc", "distance", "m", {2, 0.5, 0.05},
+                   Claim::physical, excuses, eye_in_glow, usual),
         StressCase("disc-in-fog", group, "the fog around a disc gets thick", "extinction", "1/m", {0.02, 0.3, 1},
                    Claim::physical, excuses, in_fog, usual),
-        StressCase("half-shadow", group, "a rectangle over a plate: half shadows get wide", "half a side", "m",
+        StressCase("half-shadow", group, "a rectangle over a plate: the penumbra gets wide", "half a side", "m",
                    {0.02, 0.2, 0.8}, Claim::physical, excuses, over_plate, usual),
-        StressCase("face-in-droplets", group, "a rectangle in fog that scatters forwards", "g", "", {0, 0.6, 0.9},
+        StressCase("face-in-droplets", group, "a rectangle in forward-scattering fog", "g", "", {0, 0.6, 0.9},
                    Claim::physical, excuses, forward_fog, usual),
     };
 }

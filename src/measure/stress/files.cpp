@@ -109,13 +109,13 @@ std::vector<StressCase> stress_files() {
                    seen_modes, {}, not_finite, {0, "difference from empty voxels", mend_off}),
         StressCase("negative-voxels", group, "negative density in a grid counts as empty", "share", "",
                    {0.001, 0.1, 0.9}, seen_modes, {}, below_zero, {0, "difference from empty voxels", mend_off}),
-        StressCase("tiles", group, "a grid of one tile is the same as of many voxels", "side", "voxels", {8, 32, 64},
+        StressCase("tiles", group, "a grid of one tile renders like one of many voxels", "side", "voxels", {8, 32, 64},
                    seen_modes, {}, tiled, {1e-5, "relative RMSE against voxels", tiles_off}),
         StressCase("grid-background", group, "a grid whose background is fog: inside it counts, outside it ends",
                    "density", "", {0.1, 1, 10}, seen_modes, {}, with_background,
                    {1e-5, "relative RMSE against voxels", background_off}),
         StressCase("empty-grid", group, "a grid of zeros, and of nothing", "voxels", "", {512, 0}, Claim::along_rays,
-                   {}, nothing, {0, "most light scattered or taken away", anything}),
+                   {}, nothing, {0, "most light scattered or absorbed", anything}),
     };
 }
 }

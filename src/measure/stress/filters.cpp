@@ -39,7 +39,7 @@ std::vector<StressCase> stress_filters() {
                    Claim::physical, edges, narrow_profile),
         StressCase("gobo", group, "the squares of a gobo get small", "squares across", "", {2, 4, 8, 16},
                    Claim::physical, edges, grey_board),
-        StressCase("colored-gobo", group, "the same in colours", "squares across", "", {2, 8}, Claim::physical, edges,
+        StressCase("colored-gobo", group, "the same in colors", "squares across", "", {2, 8}, Claim::physical, edges,
                    colored_board),
     };
 }

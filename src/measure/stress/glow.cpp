@@ -72,7 +72,7 @@ std::vector<StressCase> stress_glow() {
                    Claim::physical, excuses, in_fog, usual),
         StressCase("grille", group, "it shines through bars that get fine", "bar", "m", {0.4, 0.1, 0.03},
                    Claim::physical, excuses, behind_grille, usual),
-        StressCase("eye-at-glow", group, "the eye comes near it", "distance", "m", {2, 0.5, 0.02}, Claim::physical,
+        StressCase("eye-at-glow", group, "the camera comes near it", "distance", "m", {2, 0.5, 0.02}, Claim::physical,
                    excuses, eye_before, usual),
     };
 }

@@ -64,15 +64,15 @@ std::vector<StressCase> stress_lobes() {
     constexpr std::string_view group = "phase functions";
     const StressMeasure usual = usual_measure();
     return {
-        StressCase("rayleigh-lamp", group, "a lamp in Rayleigh's fog, which gets thick", "extinction", "1/m",
+        StressCase("rayleigh-lamp", group, "a lamp in Rayleigh-scattering fog that gets thick", "extinction", "1/m",
                    {0.02, 0.2, 0.6}, Claim::physical, excuses, rayleigh, usual),
-        StressCase("draine-lamp", group, "a lamp through Draine's lobe, which gets narrow", "g", "", {0.2, 0.7, 0.95},
+        StressCase("draine-lamp", group, "a lamp through a Draine lobe that gets narrow", "g", "", {0.2, 0.7, 0.95},
                    Claim::physical, excuses, draine, usual),
         StressCase("droplets-lamp", group, "a lamp through droplets of growing size", "diameter", "micrometres",
                    {5, 15, 50}, Claim::physical, excuses, droplets, usual),
-        StressCase("two-lobes-lamp", group, "a lamp through two lobes", "share of the one forwards", "", {0, 0.5, 1},
+        StressCase("two-lobes-lamp", group, "a lamp through two lobes", "share of the forward lobe", "", {0, 0.5, 1},
                    Claim::physical, excuses, lobes_of_lamp, usual),
-        StressCase("two-lobes-sun", group, "the sun through two lobes", "share of the one forwards", "", {0, 0.5, 1},
+        StressCase("two-lobes-sun", group, "the sun through two lobes", "share of the forward lobe", "", {0, 0.5, 1},
                    Claim::physical, excuses, lobes_of_sun, usual),
         StressCase("spike-lamp", group, "a lamp through a table whose spike gets narrow", "spike", "degrees",
                    {40, 10, 2}, Claim::physical, excuses, spike_of_lamp, usual),

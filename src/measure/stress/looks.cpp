@@ -158,7 +158,7 @@ double table_pops(Trial& trial) {
 }
 
 std::vector<StressCase> stress_looks() {
-    constexpr std::string_view group = "looks";
+    constexpr std::string_view group = "artistic modes";
     return {
         StressCase("sun-behind", group, "no ghost of a sun behind the camera", "sun to view", "degrees",
                    {90, 91, 135, 180}, "radial-blur", {}, sun_aside, {0, "brightest pixel added", light_added}),
@@ -167,8 +167,8 @@ std::vector<StressCase> stress_looks() {
                    {0.01, "gain over one degree further in", grows_outside}),
         StressCase("sun-crosses-edge", group, "rays do not pop where the sun crosses the edge", "sun to view",
                    "degrees", {20, 28, 32, 34, 50}, "radial-blur", {}, sun_aside,
-                   {0.03, "change over a quarter of a degree, by the most there is", pops}),
-        StressCase("hot-foreground", group, "bright things that are no sun are not smeared", "emission", "nits",
+                   {0.03, "change over a quarter of a degree / maximum", pops}),
+        StressCase("hot-foreground", group, "bright objects other than the sun are not smeared", "emission", "nits",
                    {1, 100, 1e4}, "radial-blur", {}, hot_ball,
                    {1e-3, "largest change of what is added", smeared_emission}),
         StressCase("blur-samples", group, "brightness does not depend on the number of samples", "samples", "",
@@ -178,17 +178,17 @@ std::vector<StressCase> stress_looks() {
                    {1, 1.78, 2.4, 0.5}, "radial-blur", {}, disc, {0.01, "eccentricity", eccentricity}),
         StressCase("smear-is-no-light", group, "fog gets thick around smeared rays", "extinction", "1/m",
                    {0.01, 0.1, 1}, "radial-blur", no_light, in_thick_fog),
-        StressCase("round-a-beam", group, "the eye goes round a beam: its card does not pop", "azimuth", "degrees",
+        StressCase("round-a-beam", group, "the camera goes around a beam: its card does not pop", "azimuth", "degrees",
                    {0, 30, 60, 85, 90, 120, 180}, "billboard", faded, orbit,
                    {0.02, "change of the mean over half a degree", orbit_pops}),
-        StressCase("many-cards", group, "cards over cards add up to no more light than there is", "openings",
-                   "per side", {1, 2, 4, 8}, "billboard", {}, holes, {1, "mean by that of the exact march", energy}),
-        StressCase("into-a-card", group, "the eye enters a beam: its card does not fill the image", "eye to beam", "m",
-                   {2, 1, 0.5, 0.1, 0}, "billboard", {}, into_beam,
-                   {1.5, "brightest pixel by that seen from afar", much_brighter}),
-        StressCase("card-meets-table", group, "a table top rises into a beam: its card is not cut", "height", "m",
+        StressCase("many-cards", group, "overlapping cards do not add more light than there is", "openings", "per side",
+                   {1, 2, 4, 8}, "billboard", {}, holes, {1, "mean / that of the exact march", energy}),
+        StressCase("into-a-card", group, "the camera enters a beam: its card does not fill the image", "camera to beam",
+                   "m", {2, 1, 0.5, 0.1, 0}, "billboard", {}, into_beam,
+                   {1.5, "brightest pixel / that seen from afar", much_brighter}),
+        StressCase("card-meets-table", group, "a table top rises into a beam: its card has no hard cut", "height", "m",
                    {0.5, 1, 1.5, 2}, "billboard", {}, table,
-                   {0.02, "change over a centimetre, by the mean without it", table_pops}),
+                   {0.02, "change over a centimetre / mean without it", table_pops}),
     };
 }
 }

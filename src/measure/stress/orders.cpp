@@ -101,25 +101,25 @@ StressScene under_sloping_floor(double degrees) { return under_floor(0.02f, stat
 std::vector<StressCase> stress_orders() {
     constexpr std::string_view group = "multiple scattering";
     const StressMeasure mean{0.05, "error of the fog's mean light against all orders", orders_off};
-    const StressMeasure dark{0.01, "light below by light without a floor", leak};
+    const StressMeasure dark{0.01, "light below / light without a floor", leak};
     return {
-        StressCase("white-furnace", group, "white fog in even light cannot be seen", "optical depth", "", {0.5, 2, 8},
-                   "path", {}, furnace, {1e-3, "mean less 1, beyond three standard errors", furnace_off}),
+        StressCase("white-furnace", group, "white fog in uniform light is invisible", "optical depth", "", {0.5, 2, 8},
+                   "path", {}, furnace, {1e-3, "mean minus 1, beyond three standard errors", furnace_off}),
         StressCase("many-orders", group, "white fog gets thick: light scatters more than once", "optical depth", "",
                    {0.05, 0.2, 0.5, 1, 3, 10}, Claim::physical, once, white,
                    {0.15, "error of the fog's mean light against all orders", orders_off}),
-        StressCase("added-orders", group, "the same with a grid for what has scattered before", "optical depth", "",
+        StressCase("added-orders", group, "the same with a grid of multiply scattered light", "optical depth", "",
                    {0.05, 0.2, 0.5, 1, 3, 10}, Claim::fluence, {}, white_with_grid, mean),
-        StressCase("added-lobe", group, "fog that sends light on, with such a grid", "g", "", {-0.5, 0, 0.5, 0.9},
-                   Claim::fluence, {}, lobe_with_grid, mean),
-        StressCase("added-colour", group, "coloured fog, with such a grid", "albedo", "", {0, 0.3, 0.9, 1},
+        StressCase("added-lobe", group, "fog with a backward to forward lobe, with such a grid", "g", "",
+                   {-0.5, 0, 0.5, 0.9}, Claim::fluence, {}, lobe_with_grid, mean),
+        StressCase("added-colour", group, "colored fog, with such a grid", "albedo", "", {0, 0.3, 0.9, 1},
                    Claim::fluence, {}, dull_with_grid, mean),
         StressCase("added-lamp", group, "a lamp in fog that gets thick, with such a grid", "optical depth", "",
                    {0.2, 1, 3}, Claim::fluence, {}, lamp_with_grid, mean),
         StressCase("below-floor", group, "light scattered above a floor stays there", "thickness", "m",
                    {0.5, 0.1, 0.02, 0.005}, Claim::fluence, {}, under_thin_floor, dark),
-        StressCase("below-slope", group, "the same of a floor across the cells of the grid", "slope", "degrees",
-                   {0, 5, 20, 35, 45}, Claim::fluence, {}, under_sloping_floor, dark),
+        StressCase("below-slope", group, "the same for a floor that slopes across the cells of the grid", "slope",
+                   "degrees", {0, 5, 20, 35, 45}, Claim::fluence, {}, under_sloping_floor, dark),
     };
 }
 }

@@ -71,8 +71,8 @@ std::vector<StressCase> stress_skies() {
     constexpr std::string_view group = "skies";
     const StressMeasure usual = usual_measure();
     return {
-        StressCase("half-sky", group, "half a sky, in fog that scatters forwards", "g", "", {0, 0.5, 0.9},
-                   Claim::physical, excuses, half_lit, usual),
+        StressCase("half-sky", group, "half a sky, in forward-scattering fog", "g", "", {0, 0.5, 0.9}, Claim::physical,
+                   excuses, half_lit, usual),
         StressCase("sky-in-thick-fog", group, "fog under half a sky gets thick", "optical depth", "", {0.1, 1, 10},
                    Claim::physical, excuses, in_thick_fog, usual),
         StressCase("sun-in-map", group, "the sun of a map shrinks to a few texels", "radius", "degrees", {30, 5, 0.5},
@@ -81,7 +81,7 @@ std::vector<StressCase> stress_skies() {
                    {0, 0.5, 0.99}, Claim::physical, excuses, with_contrast, usual),
         StressCase("under-roof", group, "a roof whose hole gets small", "hole", "m", {2, 0.6, 0.1}, Claim::physical,
                    excuses, under_roof, usual),
-        StressCase("sky-around", group, "the eye goes round fog under a sky that is bright on one side", "azimuth",
+        StressCase("sky-around", group, "the camera goes around fog under a sky that is bright on one side", "azimuth",
                    "degrees", {0, 90, 180}, Claim::physical, excuses, seen_from, usual),
     };
 }

@@ -103,7 +103,7 @@ Scene slatted_room() {
 }
 }
 
-std::vector<CheckGroup> invariance_checks() { return {{"the same fog said twice", 1, check_grids}}; }
+std::vector<CheckGroup> invariance_checks() { return {{"the same fog described twice", 1, check_grids}}; }
 
 std::vector<Check> verify_program(const VerifyControl& control) {
     std::vector<CheckGroup> groups = closed_form_checks();

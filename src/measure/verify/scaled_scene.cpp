@@ -9,8 +9,10 @@ template<class T> void scale(Keyed<T>& keyed, float factor) {
 
 void scale_light(LightSource& light, float factor) {
     scale(light.position, factor), scale(light.radius, factor);
+    scale(light.width, factor), scale(light.height, factor);
     light.range *= factor;
-    if (!is_distant(light)) scale(light.intensity, factor * factor);
+    const bool per_area = is_distant(light) || (has_area(light) && light.unit == LightUnit::native); // lux or nits
+    if (!per_area) scale(light.intensity, factor * factor);
 }
 
 void scale_medium(MediumSource& medium, float factor) {

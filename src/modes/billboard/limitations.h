@@ -15,9 +15,9 @@ inline constexpr LimitationKind card_edge_on{"card_edge_on", "seen along the bea
 inline constexpr LimitationKind open_light{
     "open_light", "not behind an opening: cards show beams through openings only, the rest is haze without shadows"};
 inline constexpr LimitationKind no_opening{"no_opening", "no opening found for the light to shine through: no card"};
-inline constexpr LimitationKind no_fog{"no_fog", "there is no fog for cards to show"};
+inline constexpr LimitationKind no_fog{"no_fog", "has no fog for cards to show"};
 inline constexpr LimitationKind homogeneous_in_cards{"homogeneous_in_cards",
-                                                     "drawn as homogeneous fog, on the cards only"};
+                                                     "rendered as homogeneous fog, on the cards only"};
 }
 
 Limitations billboard_limitations(const View& view, const Snapshot& snapshot, const Settings& settings);

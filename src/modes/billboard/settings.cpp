@@ -8,34 +8,37 @@ void append_billboard_rows(std::vector<SettingRow>& rows) {
     const auto number = [&](const char* name, const char* unit, double low, double high, const char* doc, auto field) {
         rows.push_back(number_row(std::string("billboard.") + name, unit, low, high, doc, field));
     };
-    number("cards", "", 0, 256, "most cards found per light, largest openings first; 0 = hand-placed ones only",
+    number("cards", "", 0, 256,
+           "maximum number of cards found per light, largest openings first; 0 = only hand-placed cards",
            TYNDALL_FIELD(of<BillboardSettings>().cards));
-    rows.push_back(
-        choice_row("billboard.facing", {"axis", "camera", "cross"},
-                   "how cards turn: about their beam towards the eye, square to the view, or not at all, two "
-                   "crossed for each beam",
-                   TYNDALL_FIELD(of<BillboardSettings>().facing)));
+    rows.push_back(choice_row("billboard.facing", {"axis", "camera", "cross"},
+                              "how cards face the camera: axis = turned about their beam, camera = parallel to the "
+                              "image plane, cross = two fixed, crossed cards per beam",
+                              TYNDALL_FIELD(of<BillboardSettings>().facing)));
     number("brightness", "", 0, 1000, "factor on all cards and veils",
            TYNDALL_FIELD(of<BillboardSettings>().brightness));
-    number("veil", "", 0, 1, "share of the fog in the open air that a sun lights evenly, before its cards",
+    number("veil", "", 0, 1,
+           "fraction of a sun's unshadowed fog light added as haze in the open, in addition to its cards",
            TYNDALL_FIELD(of<BillboardSettings>().veil));
-    number("gaps", "", 0, 1000, "factor on cards found in gaps in the open air, which have to show before its veil",
+    number("gaps", "", 0, 1000, "factor on cards found at gaps in the open, so that they show against the veil",
            TYNDALL_FIELD(of<BillboardSettings>().gaps));
-    number("streaks", "", 0, 1, "how far stripes along the beam darken it",
+    number("streaks", "", 0, 1, "how much stripes along the beam darken it",
            TYNDALL_FIELD(of<BillboardSettings>().streaks));
     number("stripes", "", 0, 200, "stripes across a card", TYNDALL_FIELD(of<BillboardSettings>().stripes));
-    number("soft", "", 0.05, 1, "share of a card's half width over which it fades out",
+    number("soft", "", 0.05, 1, "fraction of a card's half width over which it fades out",
            TYNDALL_FIELD(of<BillboardSettings>().soft));
     number("scroll", "m/s", -1e9, 1e9, "how fast the texture moves along the beam",
            TYNDALL_FIELD(of<BillboardSettings>().scroll));
-    number("sway", "", 0, 1, "how far a card's brightness swings", TYNDALL_FIELD(of<BillboardSettings>().sway));
+    number("sway", "", 0, 1, "how much a card's brightness varies over time",
+           TYNDALL_FIELD(of<BillboardSettings>().sway));
     number("specks", "", 0, 100, "brightness of dust particles in the beam",
            TYNDALL_FIELD(of<BillboardSettings>().specks));
-    number("near_fade", "m", 0, 1e9, "distance from the eye within which cards fade in",
+    number("near_fade", "m", 0, 1e9, "distance from the camera within which cards fade in",
            TYNDALL_FIELD(of<BillboardSettings>().near_fade));
-    number("far_fade", "m", 1e-6, 1e9, "distance from the eye at which cards have faded out, over its last half",
+    number("far_fade", "m", 1e-6, 1e9,
+           "distance from the camera at which cards have faded out, over the last half of it",
            TYNDALL_FIELD(of<BillboardSettings>().far_fade));
-    number("soft_depth", "m", 0, 1e9, "distance before a surface over which a card fades out",
+    number("soft_depth", "m", 0, 1e9, "distance in front of a surface over which a card fades out",
            TYNDALL_FIELD(of<BillboardSettings>().soft_depth));
     rows.push_back(choice_row("billboard.fog", switches, "homogeneous fog dims the cards and what is behind them",
                               TYNDALL_FIELD(of<BillboardSettings>().fog)));

@@ -14,7 +14,7 @@ inline constexpr LimitationKind no_shadows{"no_shadows", "shadows of surfaces ar
 inline constexpr LimitationKind point_light_only{"point_light_only",
                                                  "treated as a point light; the radius only caps the brightness"};
 inline constexpr LimitationKind unphysical_attenuation{"unphysical_attenuation",
-                                                       "cone.attenuation is not the inverse square: not physical"};
+                                                       "cone.attenuation is not inverse_square: not physical"};
 inline constexpr LimitationKind inner_cone_ignored{"inner_cone_ignored",
                                                    "cone.edge is soft: the light's own inner cone is ignored"};
 inline constexpr LimitationKind cut_near_light{"cut_near_light",

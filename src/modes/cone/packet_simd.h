@@ -26,7 +26,6 @@ struct Scratch {
     std::vector<Lanes> from, to; // where the rays enter and leave each medium
     std::vector<Lanes> sums;     // per medium: the light it scatters or emits
     std::vector<Lanes> breaks;   // where the integrand has a kink
-    Lanes shares;                // of optical depth, for statistics
 };
 
 // The rays relative to one light's fog.

@@ -6,31 +6,32 @@
 namespace tyndall {
 void append_cone_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("cone.nodes", "", 2, 32,
-                              "quadrature nodes on the widest pieces of a ray; narrow and thin ones take fewer",
+                              "quadrature nodes on the widest segments of a ray; narrow and thin ones use fewer",
                               TYNDALL_FIELD(of<ConeSettings>().nodes)));
     rows.push_back(number_row("cone.near_radius", "m", 0, 1e9,
                               "radius of a spot's lens: its light begins where the cone is that wide",
                               TYNDALL_FIELD(of<ConeSettings>().near_radius)));
     rows.push_back(choice_row("cone.attenuation", {"inverse_square", "linear", "none"},
-                              "of local lights with distance; linear = from its strength at 1 m to 0 at the light's "
-                              "range (or the scene's diagonal), none = as at 1 m everywhere within range",
+                              "attenuation of local lights with distance; linear = from the intensity at 1 m to 0 at "
+                              "the light's range (or the scene's diagonal), none = as at 1 m everywhere within range",
                               TYNDALL_FIELD(of<ConeSettings>().attenuation)));
     rows.push_back(choice_row("cone.edge", {"physical", "soft"},
-                              "of spots; physical = the light's inner and outer cone, soft = smooth in the angle from "
-                              "cone.inner of the outer cone on",
+                              "falloff at the edge of spots; physical = the light's inner and outer cone, soft = "
+                              "smoothstep in the angle, from cone.inner times the outer cone to the outer cone",
                               TYNDALL_FIELD(of<ConeSettings>().edge)));
-    rows.push_back(number_row("cone.inner", "", 0, 1, "share of the outer cone's angle that a soft edge leaves even",
+    rows.push_back(number_row("cone.inner", "", 0, 1,
+                              "with a soft edge: fraction of the outer cone's angle that is lit uniformly",
                               TYNDALL_FIELD(of<ConeSettings>().inner)));
-    rows.push_back(number_row("cone.noise", "", 0, 1, "how far drifting noise modulates the light of local lights",
+    rows.push_back(number_row("cone.noise", "", 0, 1, "amount by which drifting noise modulates local lights",
                               TYNDALL_FIELD(of<ConeSettings>().noise)));
-    rows.push_back(number_row("cone.noise_size", "m", 1e-6, 1e9, "size of the noise's largest shapes",
+    rows.push_back(number_row("cone.noise_size", "m", 1e-6, 1e9, "size of the largest features of the noise",
                               TYNDALL_FIELD(of<ConeSettings>().noise_size)));
-    rows.push_back(number_row("cone.noise_speed", "m/s", -1e9, 1e9, "how fast the noise rises",
+    rows.push_back(number_row("cone.noise_speed", "m/s", -1e9, 1e9, "speed at which the noise rises",
                               TYNDALL_FIELD(of<ConeSettings>().noise_speed)));
-    rows.push_back(choice_row("cone.resolution", resolutions,
-                              "resolution of the fog's light along each side; it is spread over the whole image with "
-                              "regard to depth",
-                              TYNDALL_FIELD(of<ConeSettings>().resolution)));
+    rows.push_back(
+        choice_row("cone.resolution", resolutions,
+                   "resolution of the fog's light along each side, with depth-aware upsampling to the full image",
+                   TYNDALL_FIELD(of<ConeSettings>().resolution)));
     mark_advanced(rows, {"near_radius", "attenuation", "edge", "inner", "noise", "noise_size", "noise_speed"});
 }
 

@@ -23,7 +23,7 @@ inline constexpr LimitationKind coarse_glow{
     "coarse_glow", "fog glows within {} degrees of it, and froxels are {} degrees across: the glow is blurred"};
 inline constexpr LimitationKind coarse_alpha_shadows{
     "coarse_alpha_shadows",
-    "shadows of MASK and BLEND surfaces are no finer than froxels: in each the mean of eight shadow rays or more"};
+    "shadows of MASK and BLEND surfaces are no finer than froxels: each froxel averages eight or more shadow rays"};
 }
 
 Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const Settings& settings);

@@ -8,30 +8,28 @@ void append_froxel_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("froxel.tile", "pixels", 1, 64, "width and height of a froxel in the image",
                               TYNDALL_FIELD(of<FroxelSettings>().tile)));
     rows.push_back(number_row("froxel.depth_slices", "", 1, 4096,
-                              "froxels in depth, from the nearest fog in view to "
-                              "the farthest depth that is needed",
+                              "froxels in depth, from the nearest fog in view to the farthest depth needed",
                               TYNDALL_FIELD(of<FroxelSettings>().depth_slices)));
     rows.push_back(number_row("froxel.depth_growth", "", 0.1, 256,
-                              "how many times as thick the last slice is as the first; 1 = all the same",
+                              "thickness of the last slice relative to the first; 1 = all equal",
                               TYNDALL_FIELD(of<FroxelSettings>().depth_growth)));
-    rows.push_back(choice_row("froxel.visibility", {"off", "rays", "intervals"},
-                              "shadows of surfaces in the fog; rays = sampled in each froxel, intervals = the exact "
-                              "lit share of the line through its middle, and of lamps that of each camera ray where "
-                              "their shadows fit in 1 GiB",
-                              TYNDALL_FIELD(of<FroxelSettings>().visibility)));
-    rows.push_back(number_row("froxel.shadow_rays", "", 1, 256,
-                              "points of each froxel at which light and fog are sampled; with intervals, points of a "
-                              "soft light",
-                              TYNDALL_FIELD(of<FroxelSettings>().shadow_rays)));
+    rows.push_back(
+        choice_row("froxel.visibility", {"off", "rays", "intervals"},
+                   "shadows of surfaces in the fog; rays = sampled in each froxel, intervals = exact lit fraction of "
+                   "the line through its center, and for lamps of each camera ray if their shadows fit in 1 GiB",
+                   TYNDALL_FIELD(of<FroxelSettings>().visibility)));
+    rows.push_back(
+        number_row("froxel.shadow_rays", "", 1, 256,
+                   "points per froxel at which light and fog are sampled; with intervals, points on a soft light",
+                   TYNDALL_FIELD(of<FroxelSettings>().shadow_rays)));
     rows.push_back(choice_row("froxel.lookup", {"trilinear", "tricubic", "jittered"},
-                              "how pixels are found between froxels; tricubic = smoother, jittered = grain instead of "
-                              "cells",
+                              "interpolation between froxels; tricubic = smoother, jittered = grain instead of cells",
                               TYNDALL_FIELD(of<FroxelSettings>().lookup)));
-    rows.push_back(number_row("froxel.history", "", 0, 0.99, "weight of earlier frames, where there are any",
+    rows.push_back(number_row("froxel.history", "", 0, 0.99,
+                              "weight of earlier frames (with --history, and in the viewer)",
                               TYNDALL_FIELD(of<FroxelSettings>().history)));
     rows.push_back(choice_row("froxel.amortise", switches,
-                              "with a history, light only a quarter of the froxels anew "
-                              "in each frame",
+                              "with a history, relight only a quarter of the froxels in each frame",
                               TYNDALL_FIELD(of<FroxelSettings>().amortise)));
     mark_advanced(rows, {"depth_growth", "amortise"});
 }

@@ -5,33 +5,33 @@
 
 namespace tyndall {
 void append_march_rows(std::vector<SettingRow>& rows) {
-    rows.push_back(number_row("march.step_depth", "", 1e-4, 10, "most optical depth one step may cross",
+    rows.push_back(number_row("march.step_depth", "", 1e-4, 10, "maximum optical depth per step",
                               TYNDALL_FIELD(march.step_depth)));
-    rows.push_back(number_row("march.step_voxels", "voxels", 0.05, 64, "most voxels one step may cross",
+    rows.push_back(number_row("march.step_voxels", "voxels", 0.05, 64, "maximum length of a step in voxels",
                               TYNDALL_FIELD(march.step_voxels)));
     rows.push_back(number_row("march.step_share", "", 1e-5, 1,
-                              "longest step as a share of the ray's stretch through fog",
+                              "maximum length of a step, as a fraction of the ray's length in fog",
                               TYNDALL_FIELD(march.step_share)));
     rows.push_back(number_row("march.near_light", "", 0.005, 10,
-                              "a step is at most this share of the distance to a local light, and an eighth "
-                              "of it of the way through the beam of a spot",
+                              "maximum length of a step, as a fraction of the distance to a local light; in a spot's "
+                              "beam also an eighth of this fraction of the length inside it",
                               TYNDALL_FIELD(march.near_light)));
-    rows.push_back(number_row("march.min_transmittance", "", 0, 0.5, "the march ends where less than this share passes",
+    rows.push_back(number_row("march.min_transmittance", "", 0, 0.5,
+                              "marching stops where transmittance falls below this",
                               TYNDALL_FIELD(march.min_transmittance)));
-    rows.push_back(
-        choice_row("march.visibility", {"off", "rays", "maps", "intervals", "exact"},
-                   "shadows of surfaces in the fog; intervals = integrated over the lit intervals of each ray, "
-                   "found without sampling (by rays where surfaces have alpha, or more than 200000 "
-                   "triangles and soft or many lights); rays = sampled at each step; maps = looked up in "
-                   "shadow maps at each step (shadow_map.*); exact = as intervals, and everything else "
-                   "integrated as exactly as the fog allows: the reference",
-                   TYNDALL_FIELD(march.visibility)));
+    rows.push_back(choice_row(
+        "march.visibility", {"off", "rays", "maps", "intervals", "exact"},
+        "shadows of surfaces in the fog; intervals = integrated over the lit intervals of each ray, found without "
+        "sampling (by rays for surfaces with alpha, or for more than 200000 triangles with soft or many lights); rays "
+        "= sampled at each step; maps = looked up in shadow maps at each step (shadow_map.*); exact = like intervals, "
+        "with everything else integrated as exactly as the fog allows: the reference",
+        TYNDALL_FIELD(march.visibility)));
     rows.push_back(number_row("march.nodes", "", 1, 16,
-                              "Gauss-Legendre nodes on each lit interval of fog without a grid, with intervals",
+                              "with intervals: Gauss-Legendre nodes on each lit interval of fog without a grid",
                               TYNDALL_FIELD(march.nodes)));
     rows.push_back(number_row("march.light_marches", "", 0, 65536,
-                              "with exact: from how many nodes of a ray, drawn by chance as each adds to its light, "
-                              "grids and alpha on the way to each light are followed; 0 = from all",
+                              "with exact: number of nodes per ray and light, resampled by contribution, from which "
+                              "transmittance to the light is marched through grids and alpha; 0 = all nodes",
                               TYNDALL_FIELD(march.light_marches)));
     mark_advanced(rows, {"step_voxels", "near_light", "min_transmittance", "light_marches"});
 }

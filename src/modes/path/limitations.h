@@ -9,7 +9,7 @@ struct View;
 
 namespace limitation {
 inline constexpr LimitationKind long_paths{
-    "long_paths", "unbounded and barely absorbing: paths get very long; bounds or a limit by --orders shorten them"};
+    "long_paths", "unbounded and barely absorbing: paths get very long; bounds or a lower --orders shorten them"};
 }
 
 Limitations path_limitations(const View& view, const Snapshot& snapshot, const Settings& settings);

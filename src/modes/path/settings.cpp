@@ -6,7 +6,7 @@
 namespace tyndall {
 void append_path_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("path.orders", "", 1, all_orders,
-                              "most times light scatters, in fog or on surfaces; 1 = once",
+                              "maximum scattering order, in fog or on surfaces; 1 = single scattering",
                               TYNDALL_FIELD(path.orders)));
 }
 

@@ -14,7 +14,7 @@ inline constexpr LimitationKind homogeneous_dimming{
     "homogeneous_dimming", "dims what is behind it as homogeneous fog of its mean density (radial_blur.fog)"};
 inline constexpr LimitationKind light_off_screen{"light_off_screen", "behind the camera or far off screen: no rays"};
 inline constexpr LimitationKind rays_of_the_middle{
-    "rays_of_the_middle", "rays start where it is half way through the open shutter; it moves {} pixels meanwhile"};
+    "rays_of_the_middle", "rays start from its position at mid-shutter; it moves {} pixels while the shutter is open"};
 inline constexpr LimitationKind light_leaving_screen{"light_leaving_screen", "off screen: rays fade out"};
 }
 

@@ -6,32 +6,33 @@
 namespace tyndall {
 void append_radial_blur_rows(std::vector<SettingRow>& rows) {
     rows.push_back(choice_row("radial_blur.source", {"occlusion", "highlights"},
-                              "what is blurred: the sky around the light with everything in front of it black, or what "
-                              "is bright in the finished image",
+                              "what is blurred: occlusion = the sky around the light, with everything in front of it "
+                              "black; highlights = bright parts of the finished image",
                               TYNDALL_FIELD(of<RadialBlurSettings>().source)));
     rows.push_back(number_row("radial_blur.samples", "", 1, 1024, "samples along the line to the light",
                               TYNDALL_FIELD(of<RadialBlurSettings>().samples)));
-    rows.push_back(number_row("radial_blur.density", "", 0.01, 1, "share of the line to the light that they cover",
+    rows.push_back(number_row("radial_blur.density", "", 0.01, 1,
+                              "fraction of the line to the light that the samples cover",
                               TYNDALL_FIELD(of<RadialBlurSettings>().density)));
-    rows.push_back(number_row("radial_blur.decay", "", 0, 1, "what is left from one of 32 samples to the next",
+    rows.push_back(number_row("radial_blur.decay", "", 0, 1, "brightness factor from one of 32 samples to the next",
                               TYNDALL_FIELD(of<RadialBlurSettings>().decay)));
     rows.push_back(number_row("radial_blur.weight", "", 0, 100, "weight of every sample",
                               TYNDALL_FIELD(of<RadialBlurSettings>().weight)));
-    rows.push_back(number_row("radial_blur.exposure", "", 0, 100, "factor on their sum",
+    rows.push_back(number_row("radial_blur.exposure", "", 0, 100, "factor on the sum of the samples",
                               TYNDALL_FIELD(of<RadialBlurSettings>().exposure)));
     rows.push_back(number_row("radial_blur.threshold", "", 0, 1e6, "luminance above which highlights are blurred",
                               TYNDALL_FIELD(of<RadialBlurSettings>().threshold)));
     rows.push_back(number_row("radial_blur.size", "image heights", 0.01, 100,
-                              "radius at which the bright sky around a sun has faded",
+                              "radius at which the bright sky around a sun has faded out",
                               TYNDALL_FIELD(of<RadialBlurSettings>().size)));
-    rows.push_back(number_row("radial_blur.lamp_size", "m", 1e-6, 1e9, "radius of the bright disc of other lights",
+    rows.push_back(number_row("radial_blur.lamp_size", "m", 1e-6, 1e9, "radius of the bright disk of other lights",
                               TYNDALL_FIELD(of<RadialBlurSettings>().lamp_size)));
     rows.push_back(number_row("radial_blur.fade", "half images", 0.01, 100,
-                              "how far outside the image a light is when its rays have faded",
+                              "distance outside the image at which a light's rays have faded out",
                               TYNDALL_FIELD(of<RadialBlurSettings>().fade)));
     rows.push_back(choice_row("radial_blur.resolution", resolutions, "resolution of the blur along each side",
                               TYNDALL_FIELD(of<RadialBlurSettings>().resolution)));
-    rows.push_back(choice_row("radial_blur.fog", switches, "surfaces and background fade in fog, taken as homogeneous",
+    rows.push_back(choice_row("radial_blur.fog", switches, "homogeneous fog dims surfaces and background",
                               TYNDALL_FIELD(of<RadialBlurSettings>().fog)));
     mark_advanced(rows, {"decay", "weight", "exposure", "fade"});
 }

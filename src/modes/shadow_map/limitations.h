@@ -9,8 +9,7 @@ struct View;
 
 namespace limitation {
 inline constexpr LimitationKind grainy_edges{
-    "grainy_edges",
-    "edges of shafts are noisy, as {n} steps per ray miss where exactly they begin and end (shadow_map.steps)"};
+    "grainy_edges", "edges of shafts are noisy: {n} steps per ray do not locate them exactly (shadow_map.steps)"};
 inline constexpr LimitationKind few_steps_for_glow{
     "few_steps_for_glow", "in view: {n} steps per ray are too few for the glow around a lamp (shadow_map.steps)"};
 }

@@ -5,30 +5,33 @@
 
 namespace tyndall {
 void append_shadow_map_rows(std::vector<SettingRow>& rows) {
-    rows.push_back(number_row("shadow_map.steps", "", 1, 1024,
-                              "steps along each ray through the fog, and as many along what each local light reaches",
-                              TYNDALL_FIELD(of<ShadowMapSettings>().steps)));
-    rows.push_back(choice_row("shadow_map.spacing", {"angle", "distance"},
-                              "steps of local lights: even in the angle around the light, or even along the ray",
-                              TYNDALL_FIELD(of<ShadowMapSettings>().spacing)));
-    rows.push_back(number_row("shadow_map.resolution", "texels", 16, 8192,
-                              "texels across each shadow map (also of march.visibility=maps, as the rows below)",
-                              TYNDALL_FIELD(of<ShadowMapSettings>().resolution)));
+    rows.push_back(
+        number_row("shadow_map.steps", "", 1, 1024,
+                   "steps along each ray through the fog, and as many along the part that each local light reaches",
+                   TYNDALL_FIELD(of<ShadowMapSettings>().steps)));
+    rows.push_back(
+        choice_row("shadow_map.spacing", {"angle", "distance"},
+                   "spacing of steps for local lights: uniform in the angle around the light, or uniform along the ray",
+                   TYNDALL_FIELD(of<ShadowMapSettings>().spacing)));
+    rows.push_back(
+        number_row("shadow_map.resolution", "texels", 16, 8192,
+                   "texels across each shadow map (like the other map settings, also used by march.visibility=maps)",
+                   TYNDALL_FIELD(of<ShadowMapSettings>().resolution)));
     rows.push_back(number_row("shadow_map.cascades", "", 1, 4,
-                              "most shadow maps of a sun, one behind the other; fewer where the scene gains nothing",
+                              "maximum number of shadow-map cascades per sun; fewer where more would gain nothing",
                               TYNDALL_FIELD(of<ShadowMapSettings>().cascades)));
     rows.push_back(number_row("shadow_map.pcf", "", 0, 2,
-                              "smoothing of shadow edges: 0 nearest texel, 1 the four around, 2 sixteen",
+                              "filtering of shadow edges: 0 = nearest texel, 1 = four texels, 2 = sixteen texels",
                               TYNDALL_FIELD(of<ShadowMapSettings>().pcf)));
     rows.push_back(number_row("shadow_map.bias", "texels", 0, 64,
-                              "moves surfaces away from the light; fog needs none, and light leaks by as much",
+                              "moves surfaces away from the light; fog needs no bias, and light leaks by as much",
                               TYNDALL_FIELD(of<ShadowMapSettings>().bias)));
-    rows.push_back(choice_row("shadow_map.fog_resolution", resolutions,
-                              "resolution of the fog's light along each side; it is spread over the whole image with "
-                              "regard to depth",
-                              TYNDALL_FIELD(of<ShadowMapSettings>().fog_resolution)));
+    rows.push_back(
+        choice_row("shadow_map.fog_resolution", resolutions,
+                   "resolution of the fog's light along each side, with depth-aware upsampling to the full image",
+                   TYNDALL_FIELD(of<ShadowMapSettings>().fog_resolution)));
     rows.push_back(choice_row("shadow_map.blur", switches,
-                              "smooths the jitter's pattern over 4x4 pixels of like depth (of one ray per pixel)",
+                              "smooths the jitter pattern over 4x4 pixels of similar depth (with one ray per pixel)",
                               TYNDALL_FIELD(of<ShadowMapSettings>().blur)));
     mark_advanced(rows, {"spacing", "cascades", "pcf", "bias", "blur"});
 }

@@ -65,7 +65,7 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
 Mode shadow_map_mode() {
     return {.name = "shadow-map",
             .summary = "ray marching in a fixed number of steps with shadow maps",
-            .use = "fast frames with many lamps or a wide view, down to some 3 % of error",
+            .use = "fast frames with many lamps or a wide view, down to an error of about 3 %",
             .accuracy = Accuracy::single_scattering,
             .surfaces = Surfaces::shared,
             .limitations = shadow_map_limitations,

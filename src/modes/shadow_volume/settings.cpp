@@ -14,7 +14,7 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
                    "steps; auto = sampled where there is a grid",
                    TYNDALL_FIELD(of<ShadowVolumeSettings>().fog)));
     rows.push_back(number_row("shadow_volume.nodes", "", 1, 32,
-                              "Gauss-Legendre nodes on each lit stretch of homogeneous fog",
+                              "Gauss-Legendre nodes on each lit segment of homogeneous fog",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().nodes)));
     rows.push_back(number_row("shadow_volume.steps", "", 1, 4096, "steps along a ray where fog is sampled",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().steps)));
@@ -23,7 +23,7 @@ void append_shadow_volume_rows(std::vector<SettingRow>& rows) {
                               "diagonal",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().shell_length)));
     rows.push_back(number_row("shadow_volume.shell_intensity", "", 0, 1e3,
-                              "a shell is as bright as this share of shell_length of lit fog",
+                              "brightness of a shell: that of lit fog over this fraction of shell_length",
                               TYNDALL_FIELD(of<ShadowVolumeSettings>().shell_intensity)));
     mark_advanced(rows, {"draw", "shell_length", "shell_intensity"});
 }

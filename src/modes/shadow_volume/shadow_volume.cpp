@@ -56,7 +56,7 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
 
 Mode shadow_volume_mode() {
     return {.name = "shadow-volume",
-            .summary = "silhouettes extruded away from the lights; fog integrated exactly where it is lit: no noise",
+            .summary = "shadow volumes extruded from silhouettes; fog integrated exactly where it is lit: no noise",
             .use = "a sun through gaps, without noise",
             .accuracy = Accuracy::homogeneous,
             .surfaces = Surfaces::shared,

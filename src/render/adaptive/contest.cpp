@@ -13,6 +13,10 @@ namespace {
 // mode whose integrator leaves little room for noise misses the target error.
 constexpr double others_share = 0.25, chance_to_miss = 0.5;
 
+// Times what measuring the main mode took: the longest image that is relied on when time is granted to the others.
+// Where few pixels hold most of the noise, a forecast from two samples may be thousands of times too long.
+constexpr double longest_relied_on = 20;
+
 // A mode with candidates yet to measure.
 struct Runner {
     const Mode* mode;
@@ -133,7 +137,8 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     Contender main = measured_alone(main_mode(), view, snapshot, settings, goal, options);
     const Choice first = main.choice;
     const double main_seconds = main.seconds, begun = goal.clock();
-    const double allowed = share * (goal.seconds > 0 ? goal.seconds : main_seconds);
+    const double known = std::min(main_seconds, longest_relied_on * (begun - start));
+    const double allowed = share * (goal.seconds > 0 ? goal.seconds : known);
     const bool too_costly = goal.seconds == 0 && main.gets_there() && allowed < others_share * (begun - start);
     const bool same_light = max_component(snapshot.ambient) == 0; // path tracing shadows it, the ground truth does not
     const bool noisy = same_light && (share == infinity || !main.gets_there() || modes.size() == 1);

@@ -37,8 +37,9 @@ bool beats(const Contender& a, const Contender& b, const Goal& goal);
 // can only lose. Artistic modes take no part. With a target error, the winner is the fastest that reaches it, or else
 // the most accurate one; with a time limit only, the most accurate one within it. Times are predicted from a few
 // pixels. `view` is the image's; candidates are based on `settings`. Measuring the other modes may take `share` times
-// the time limit or, without one, the main mode's predicted time; each mode's coarsest candidate may take as much
-// again. If measuring is predicted to take longer, no other mode is measured.
+// the time limit or, without one, the main mode's predicted time (at most twenty times what measuring it took); each
+// mode's coarsest candidate may take as much again. If measuring is predicted to take longer, no other mode is
+// measured.
 Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
                      const Goal& goal, double share, const FrameOptions& options);
 }

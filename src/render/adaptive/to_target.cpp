@@ -37,7 +37,7 @@ int batched_samples(int samples) { return (samples + noise_batches - 1) / noise_
 void check_target(const Mode& mode, std::string_view option) {
     if (error_can_be_told(mode)) return;
     fail(ExitCode::usage, std::string(option),
-         "mode '" + std::string(mode.name) + "' is artistic: it has no error bound; --mode auto picks one that has");
+         "mode '" + std::string(mode.name) + "' is artistic: it has no error bound; --mode auto picks a mode with one");
 }
 
 namespace {

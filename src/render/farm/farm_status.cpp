@@ -26,12 +26,12 @@ struct Expected {
 };
 
 std::string disagreement(const ExrGlance& glance, const Expected& expected) {
-    if (glance.frame != expected.frame) return "of another frame";
-    if (glance.partial) return "merged while parts were missing";
+    if (glance.frame != expected.frame) return "belongs to another frame";
+    if (glance.partial) return "was merged while parts were missing";
     if (glance.part != expected.part)
-        return expected.part.empty() ? "a part in the place of a frame" : "of another division into parts";
+        return expected.part.empty() ? "is a part, not a frame" : "is not the expected part (number or count differs)";
     const bool any_plan = expected.part.empty() && expected.plan_hash.empty();
-    if (glance.plan_hash != expected.plan_hash && !any_plan) return "of another plan";
+    if (glance.plan_hash != expected.plan_hash && !any_plan) return "was made from another plan";
     return {};
 }
 
@@ -43,7 +43,7 @@ std::optional<std::string> problem_of(const std::filesystem::path& file, const E
         if (const std::string why = disagreement(*glance, expected); !why.empty()) return why;
         if (verify && !expected.part.empty()) read_part(file);
         if (verify && expected.part.empty() && !read_exr(file).is_unchanged)
-            return "damaged: its bytes are not those that were written";
+            return "damaged: its contents do not match its checksum";
     } catch (const Error& error) {
         const std::string what = error.what(), place = file.string() + ": ";
         return what.starts_with(place) ? what.substr(place.size()) : what;

@@ -53,7 +53,7 @@ Json parameters(const FarmJob& job) {
     return std::vector{json_object({{"name", "Tyndall"},
                                     {"type", "STRING"},
                                     {"default", job.program},
-                                    {"description", "The program on the workers: the build that made the plan."}}),
+                                    {"description", "Path of tyndall on the workers: the build that made the plan."}}),
                        json_object({{"name", "Folder"},
                                     {"type", "PATH"},
                                     {"objectType", "DIRECTORY"},
@@ -116,7 +116,8 @@ void check_words(const FarmJob& job) {
     words.push_back(job.scene);
     for (const std::string& word : words)
         if (word.find("{{") != word.npos)
-            fail(ExitCode::usage, "openjd", "'" + printable(word, 60) + "': OpenJD has no way to write {{");
+            fail(ExitCode::usage, "openjd",
+                 "'" + printable(word, 60) + "': must not contain {{, which OpenJD cannot escape");
 }
 }
 

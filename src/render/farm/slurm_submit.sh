@@ -1,7 +1,7 @@
 #!/bin/bash
-# Hands to Slurm what is missing of this job. Run it again after a failure: nothing that is finished is done twice.
-# What sbatch reads from the environment counts too: SBATCH_PARTITION and so on. Limits of memory (MiB) and time (minutes)
-# come from a forecast where the environment has none; SBATCH_MEM_PER_NODE=0 is for nodes that do not state their memory.
+# Submits to Slurm what this job still lacks. Run it again after a failure: finished tasks are not repeated.
+# The environment variables of sbatch apply too: SBATCH_PARTITION and so on. Limits of memory (MiB) and time (minutes)
+# come from a forecast unless the environment sets them; SBATCH_MEM_PER_NODE=0 is for nodes that do not state their memory.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 tyndall=${TYNDALL:-@PROGRAM@}
@@ -23,7 +23,7 @@ for step in @STEPS@; do
 done
 [ -n "$after" ] || { echo "nothing is missing"; exit 0; }
 
-# When all have ended, what died without coming back to the queue is handed over again.
+# When all have ended, tasks that died without returning to the queue are submitted again.
 id=$(sbatch "${options[@]}" --job-name="@NAME@-finish" --output=logs/finish.%j.log --dependency="afterany$after" \
   task.sh finish "${1:-1}")
 echo "jobs${all//:/ } ${id%%;*}"

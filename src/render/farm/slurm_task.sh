@@ -34,7 +34,7 @@ parts)
 merge)
   frames=${chunks[number]}
   run @MERGE@ ;;
-finish) # what is missing is handed over again, twice at most
+finish) # submits again what is missing, at most twice
   "$tyndall" status . && exit 0
   [ "$2" -lt 3 ] && exec bash ./submit.sh $(($2 + 1))
   exit 1 ;;

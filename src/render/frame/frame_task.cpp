@@ -128,8 +128,8 @@ void check_memory(double before, size_t prepared, size_t moments) {
     const double all = before + static_cast<double>(moments) * one;
     if (machine > 0 && all > max_share * machine)
         fail(ExitCode::out_of_memory, "motion blur",
-             formatted("%zu moments would take about %.1f GiB in this mode, and the machine has %.1f: ask for fewer by "
-                       "--time-samples, or for smaller maps and grids",
+             formatted("%zu moments would take about %.1f GiB in this mode, and the machine has %.1f GiB: use fewer "
+                       "--time-samples, or smaller maps and grids",
                        moments, all / gibibyte, machine / gibibyte));
 }
 }

@@ -31,7 +31,7 @@ PartRange part_range(int part, int parts, int first_section, int sections, int l
     const int64_t all_leaves = int64_t{sections} * leaves, slices = (parts + all_leaves - 1) / all_leaves;
     if (slices > blocks)
         fail(ExitCode::usage, "--part",
-             formatted("this frame has %lld parts at most", static_cast<long long>(all_leaves * blocks)));
+             formatted("this frame can have at most %lld parts", static_cast<long long>(all_leaves * blocks)));
     const int64_t all = all_leaves * slices, before = int64_t{first_section} * leaves * slices;
     return {before + (part - 1) * all / parts, before + part * all / parts, static_cast<int>(slices)};
 }
@@ -134,10 +134,11 @@ void check_size(const FramePart& part) {
     const size_t channels = nodes_of(part.range, part.leaves).size() * part.numbers + 3; // Z, offset and finished
     const double bytes = sizeof(float) * static_cast<double>(channels) * part.size.x * part.size.y;
     if (bytes > static_cast<double>(max_decoded_bytes) || channels > max_channels)
-        fail(ExitCode::usage, "--part",
-             formatted("a part of this frame would take %zu channels and %.1f GiB; %d channels and 4 GiB are the most: "
-                       "more parts or fewer layers make it smaller",
-                       channels, bytes / (1 << 30), max_channels));
+        fail(
+            ExitCode::usage, "--part",
+            formatted("a part of this frame would take %zu channels and %.1f GiB; %d channels and 4 GiB are the limit: "
+                      "use more parts or fewer layers",
+                      channels, bytes / (1 << 30), max_channels));
 }
 
 // The part without samples, or with those of an earlier run.

@@ -27,7 +27,7 @@ public:
         if (descriptor_ < 0) return;
         if (fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
             close(descriptor_); // the destructor does not run
-            fail(ExitCode::unreadable, name_, "is no regular file");
+            fail(ExitCode::unreadable, name_, "is not a regular file");
         }
         bytes_ = static_cast<uint64_t>(status.st_size);
     }
@@ -89,7 +89,7 @@ struct BlockTable {
 std::optional<BlockTable> read_header(std::string_view bytes, const std::string& file, ExrGlance& glance) {
     Taken taken{bytes};
     if (taken.integer() != 20000630 || (taken.integer() & ~0x400) != 2)
-        if (!taken.short_of) refuse(file, "is no OpenEXR image of scanlines");
+        if (!taken.short_of) refuse(file, "is not a scanline OpenEXR image");
     BlockTable table;
     int32_t low = 0, high = -1;
     while (true) {
@@ -139,9 +139,9 @@ std::optional<ExrGlance> glance_at_exr(const std::filesystem::path& path) {
         const std::string_view bytes = file.read(0, buffer);
         if (const auto table = read_header(bytes, path.string(), glance)) {
             if (ends_with_last_block(file, bytes, *table)) return glance;
-            refuse(path.string(), "short: it ends before its last block does");
+            refuse(path.string(), "truncated: it ends before the end of its last block");
         }
-        if (bytes.size() == file.bytes()) refuse(path.string(), "short: it ends within its header");
+        if (bytes.size() == file.bytes()) refuse(path.string(), "truncated: it ends within its header");
         if (length == longest_header) refuse(path.string(), "damaged: its header is longer than 1 MiB");
     }
 }

@@ -58,7 +58,7 @@ void write_png(const std::filesystem::path& file, const Image<glm::u8vec3>& srgb
     std::vector<std::byte> bytes;
     stbi_write_png_compression_level = 5;
     if (!stbi_write_png_to_func(append, &bytes, srgb.size.x, srgb.size.y, 3, srgb.pixels.data(), 3 * srgb.size.x))
-        fail(ExitCode::out_of_memory, file.string(), "no memory to encode the image");
+        fail(ExitCode::out_of_memory, file.string(), "not enough memory to encode the image");
     for (const auto& [keyword, value] : text) {
         const std::string chunk = text_chunk(keyword, value);
         const auto* first = reinterpret_cast<const std::byte*>(chunk.data());
@@ -70,7 +70,7 @@ void write_png(const std::filesystem::path& file, const Image<glm::u8vec3>& srgb
 void write_jpeg(const std::filesystem::path& file, const Image<glm::u8vec3>& srgb, int quality) {
     std::vector<std::byte> bytes;
     if (!stbi_write_jpg_to_func(append, &bytes, srgb.size.x, srgb.size.y, 3, srgb.pixels.data(), quality))
-        fail(ExitCode::out_of_memory, file.string(), "no memory to encode the image");
+        fail(ExitCode::out_of_memory, file.string(), "not enough memory to encode the image");
     write_file_atomically(file, bytes);
 }
 }

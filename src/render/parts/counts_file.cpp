@@ -32,14 +32,15 @@ std::string save_counts(const std::filesystem::path& file, const TileFactors& co
 
 std::shared_ptr<const TileFactors> load_counts(const std::filesystem::path& file, const std::string& hash) {
     const std::string bytes = read_file(file);
-    if (!bytes.starts_with(magic) || bytes.size() < header_size) refuse(file.string(), "holds no counts of samples");
-    if (content_hash(bytes) != hash) refuse(file.string(), "damaged, or of another plan");
+    if (!bytes.starts_with(magic) || bytes.size() < header_size)
+        refuse(file.string(), "does not contain sample counts");
+    if (content_hash(bytes) != hash) refuse(file.string(), "damaged, or made for another plan");
     int numbers[4];
     for (size_t i = 0; i < 4; ++i) numbers[i] = static_cast<int>(number_at(bytes, magic.size() + 4 * i, 4));
     const auto [x, y, columns, rows] = numbers;
     const bool small = x >= 0 && y >= 0 && columns > 0 && rows > 0 && columns <= max_side && rows <= max_side;
     if (!small || bytes.size() != header_size + 2 * static_cast<size_t>(columns) * static_cast<size_t>(rows))
-        refuse(file.string(), "damaged: it has another size than it says");
+        refuse(file.string(), "damaged: its size does not match its header");
     auto counts = std::make_shared<TileFactors>();
     counts->low = {x, y}, counts->factors = Image<uint16_t>(ivec2(columns, rows));
     for (size_t i = 0; i < counts->factors.pixels.size(); ++i)

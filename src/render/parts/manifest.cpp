@@ -33,7 +33,7 @@ FileStamp stamp_in(const Json& file) {
 std::string plain_name(const Json& file, const fs::path& manifest) {
     std::string name = file.string_or("name", "");
     if (fs::path(name).filename() != name || !name.ends_with(cache_extension))
-        refuse(manifest.string() + ": /files", "expected names of files of its folder; got " + printable(name, 80));
+        refuse(manifest.string() + ": /files", "expected names of files in its folder; got " + printable(name, 80));
     return name;
 }
 }

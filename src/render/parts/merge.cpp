@@ -36,13 +36,13 @@ std::string leaves_text(int64_t first, int64_t last, int leaves) {
 
 void check_alike(const PartFile& part, const PartFile& first) {
     const std::string file = part.file.string(), other = printable(first.file.filename().string(), 80);
-    if (part.plan_hash != first.plan_hash) refuse(file, "is of another plan than " + other);
+    if (part.plan_hash != first.plan_hash) refuse(file, "belongs to a different plan than " + other);
     if (part.frame != first.frame)
-        refuse(file, formatted("is of frame %d, but %s of frame %d", part.frame, other.c_str(), first.frame));
+        refuse(file, formatted("belongs to frame %d, but %s to frame %d", part.frame, other.c_str(), first.frame));
     const FramePart &a = part.part, &b = first.part;
     if (part.hash != first.hash || a.display != b.display || a.low != b.low || a.size != b.size ||
         a.numbers != b.numbers || a.leaves != b.leaves || a.lights.names != b.lights.names)
-        refuse(file, "was rendered from other inputs than " + other);
+        refuse(file, "was rendered from different inputs than " + other);
 }
 }
 
@@ -57,7 +57,7 @@ struct Holdings {
     void add_gap(const PartFile& beside, int64_t first, int64_t last, const PartFile* next = nullptr) {
         if (!found.gap.empty()) return;
         found.beside = beside.file;
-        found.gap = "a part is missing beside " + printable(beside.label, 20) + ", with " +
+        found.gap = "a part is missing next to " + printable(beside.label, 20) + ", with " +
                     leaves_text(first, last, leaves) + " (group/leaf)";
         if (next) found.gap += ", before " + printable(next->file.filename().string(), 80);
     }
@@ -71,7 +71,7 @@ PartGroups check_parts(std::vector<PartFile>& parts, const SavedPlan& plan) {
     for (const PartFile& part : parts) {
         check_alike(part, parts[0]);
         if (part.plan_hash != plan.request.grouping.plan_hash || part.part.leaves != plan.request.grouping.leaves)
-            refuse(part.file.string(), "is not of " + plan.request.grouping.plan_file.string());
+            refuse(part.file.string(), "does not belong to " + plan.request.grouping.plan_file.string());
     }
     std::ranges::sort(parts, [](const PartFile& a, const PartFile& b) {
         const PartRange &one = a.part.range, &two = b.part.range;
@@ -88,7 +88,7 @@ PartGroups check_parts(std::vector<PartFile>& parts, const SavedPlan& plan) {
         const Meeting meeting = meeting_of(before, range);
         if (meeting == Meeting::overlap)
             refuse(parts[i].file.string(),
-                   "holds samples that " + printable(parts[i - 1].file.filename().string(), 80) + " holds as well");
+                   "has samples that are also in " + printable(parts[i - 1].file.filename().string(), 80));
         if (meeting == Meeting::gap)
             holdings.add_gap(parts[i - 1], before.last / before.slices, first_whole_leaf(range), &parts[i]);
     }

@@ -57,7 +57,7 @@ struct Header {
     const std::string& text(const char* name) const {
         const auto found = attributes.find(name);
         if (found == attributes.end())
-            refuse(file, "is no part of a planned frame: its header lacks " + std::string(name));
+            refuse(file, "is not a part of a planned frame: its header lacks " + std::string(name));
         return found->second;
     }
 };
@@ -83,14 +83,14 @@ void read_lights(const Header& header, FramePart& part) {
     for (const Json& name : names->items) part.lights.names.push_back(name.string);
     for (const Json& light : of_light->items) {
         if (light.number < 0 || light.number >= static_cast<double>(names->items.size()))
-            refuse(header.file, "tyndall:partLights: there is no such layer");
+            refuse(header.file, "tyndall:partLights: no such layer");
         part.lights.of_light.push_back(static_cast<int>(light.number));
     }
 }
 
 const Image<float>& channel_of(const ExrFile& exr, const std::string& name, const std::string& file) {
     const Image<float>* channel = exr.channel(name);
-    if (!channel) refuse(file, "damaged: there is no channel " + name);
+    if (!channel) refuse(file, "damaged: it lacks channel " + name);
     return *channel;
 }
 
@@ -106,17 +106,16 @@ void check_sums(std::span<const float> sums, const SumNode& node, const FramePar
         const float kept = sums[at + kept_sum], taken = sums[at + taken_sum];
         const bool whole = std::floor(kept) == kept && std::floor(taken) == taken;
         if (!(whole && kept >= 0 && kept <= taken && taken >= fewest && taken <= most))
-            refuse(file, "damaged: it holds numbers of samples that cannot be");
+            refuse(file, "damaged: it has impossible sample counts");
     }
-    if (std::ranges::any_of(sums, [](float sum) { return std::isnan(sum); }))
-        refuse(file, "damaged: it holds sums that are no numbers");
+    if (std::ranges::any_of(sums, [](float sum) { return std::isnan(sum); })) refuse(file, "damaged: it has NaN sums");
 }
 
 // Finds the nodes and the number of values per pixel and node.
 void find_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
     const int64_t leaves = (part.range.last - part.range.first) / part.range.slices;
     if (leaves / part.leaves > static_cast<int64_t>(exr.channels.size()))
-        refuse(file, "damaged: it has fewer channels than tyndall:partRange asks for");
+        refuse(file, "damaged: it has fewer channels than tyndall:partRange requires");
     part.nodes = nodes_of(part.range, part.leaves);
     part.numbers = fixed_sums;
     while (exr.channel(channel_name(part.nodes[0], part.numbers))) part.numbers += 3;
@@ -177,7 +176,7 @@ PartFile part_in(const ExrFile& exr, const std::filesystem::path& file) {
                     header.text("tyndall:planHash"),
                     header.text("tyndall:part"),
                     0};
-    if (!exr.is_unchanged) refuse(file.string(), "damaged: its bytes are not those that were written");
+    if (!exr.is_unchanged) refuse(file.string(), "damaged: its contents do not match its checksum");
     result.frame = parsed<int>(header.text("imageCounter")).value_or(0);
     FramePart& part = result.part;
     part.display = exr.display, part.low = exr.low, part.size = exr.size;
@@ -192,7 +191,7 @@ PartFile read_part(const std::filesystem::path& file) {
     const ExrFile exr = read_exr_header(file);
     PartFile result = part_in(exr, file);
     if (exr.channel("finished"))
-        refuse(file.string(), "is the checkpoint of a part that is not finished: render it with --resume");
+        refuse(file.string(), "is the checkpoint of an unfinished part: render it with --resume");
     return result;
 }
 
@@ -215,9 +214,9 @@ std::optional<FramePart> read_checkpoint(const std::filesystem::path& file, cons
         if (const Image<float>* finished = exr.channel("finished")) read.part.finished = *finished;
         read_sums(exr, file.string(), {}, read.part);
         if (read.part.finished.empty())
-            why = "is no checkpoint";
+            why = "is not a checkpoint";
         else if (read.hash != hash || read.label != label(grouping) || read.plan_hash != grouping.plan_hash)
-            why = "is of other inputs, settings or plan";
+            why = "was made from other inputs, settings or plan";
         else
             return std::move(read.part);
     } catch (const Error& error) {
@@ -235,7 +234,7 @@ bool is_finished_part(const std::filesystem::path& file, const std::string& hash
         if (!exr.is_unchanged)
             why = "damaged";
         else if (header.text("tyndall:hash") != hash || header.text("tyndall:part") != label(grouping))
-            why = "of other inputs, settings or plan";
+            why = "made from other inputs, settings or plan";
     } catch (const Error& error) {
         why = error.what();
     }

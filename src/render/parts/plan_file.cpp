@@ -132,7 +132,7 @@ RenderRequest checked_request(const Json& json, const std::filesystem::path& fil
         const Grouping& grouping = request.grouping;
         if (request.settings.pixel.samples % (grouping.groups * grouping.sections) != 0)
             refuse("/settings/pixel.samples",
-                   formatted("expected a multiple of %d: groups by sections", grouping.groups * grouping.sections));
+                   formatted("expected a multiple of %d (groups times sections)", grouping.groups * grouping.sections));
         return request;
     } catch (const Error& error) {
         refuse(file.string(), error.what());
@@ -192,7 +192,7 @@ SavedPlan load_plan(const std::filesystem::path& file) {
                "made by Tyndall " + printable(version, 20) + "; this is " TYNDALL_VERSION);
     if (plan.build != build_name())
         refuse(file.string() + ": /build",
-               "made by another build of this version, whose bits may differ: plan again, or use that build");
+               "made by another build of this version, whose results may differ: plan again, or use that build");
     for (const Json& input : json.find("inputs")->items) plan.inputs.push_back(input.string);
     plan.request.grouping.plan_hash = content_hash(text);
     plan.plan = plan_as_asked(plan.request);

@@ -26,7 +26,7 @@ void check_picture(const Scene& scene, const RenderRequest& request) {
     const ivec2 low = request.crop_low, high = request.crop_high;
     if (low == high) return;
     if (low.x < 0 || low.y < 0 || low.x >= high.x || low.y >= high.y || high.x > size.x || high.y > size.y)
-        fail(ExitCode::usage, "crop", "it has to lie inside the image and hold a pixel");
+        fail(ExitCode::usage, "crop", "must lie inside the image and not be empty");
 }
 
 // The path without links and dots, as far as the file system can be read.
@@ -39,10 +39,10 @@ std::filesystem::path plain_path(const std::filesystem::path& path) {
 void check_outputs(const Scene& scene, const RenderRequest& request) {
     if (request.frames.empty()) fail(ExitCode::usage, "frames", "there is nothing to render");
     if (std::filesystem::path(request.output).extension() != ".exr")
-        fail(ExitCode::usage, printable(request.output), "the output has to end in .exr");
+        fail(ExitCode::usage, printable(request.output), "the output must end in .exr");
     if (request.frames.size() > 1 && !has_frame_token(request.output))
         fail(ExitCode::usage, printable(request.output),
-             "several frames need a place for the number, as in name.####.exr");
+             "several frames need a frame number in the name, like name.####.exr");
 
     std::set<std::filesystem::path> inputs, directories;
     for (const InputFile& input : scene.inputs) inputs.insert(plain_path(input.path));
@@ -52,7 +52,7 @@ void check_outputs(const Scene& scene, const RenderRequest& request) {
         if (request.png) outputs.push_back(png_name(exr));
         for (const std::filesystem::path& output : outputs) {
             if (inputs.contains(plain_path(output)))
-                fail(ExitCode::usage, output.string(), "this file belongs to the scene and would be written over");
+                fail(ExitCode::usage, output.string(), "this file belongs to the scene and would be overwritten");
             check_output(output);
             directories.insert(output.has_parent_path() ? output.parent_path() : ".");
         }
@@ -69,10 +69,9 @@ void check_job(const Scene& scene, const RenderRequest& request, const Mode& mod
     if (request.target_error > 0) check_target(mode);
     if (mode.surfaces == Surfaces::post && measures_noise(request))
         fail(ExitCode::usage, "--aov",
-             std::string(mode.name) + " works on the finished image: it has no variance and no halves");
+             std::string(mode.name) + " works on the finished image: variance and halves are not available");
     if (request.history > 0 && shutter_of(scene, request))
-        fail(ExitCode::usage, "--history",
-             "does not go with an open shutter, whose moments it would mix: add --shutter 0,0");
+        fail(ExitCode::usage, "--history", "cannot be combined with an open shutter: add --shutter 0,0");
     check_outputs(scene, request);
 }
 

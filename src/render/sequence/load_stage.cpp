@@ -26,13 +26,13 @@ bool keep(Pipeline& pipeline, Work& work) {
     std::string why;
     if (is_part(pipeline.request.grouping)) {
         work.report.kept = is_finished_part(work.report.file, work.hash, pipeline.request.grouping, why);
-        if (!why.empty()) say(pipeline, work, "is rendered again: " + why);
+        if (!why.empty()) say(pipeline, work, "rendering again: " + why);
         if (work.report.kept) say(pipeline, work, "kept " + work.report.file);
         return work.report.kept;
     }
     const std::optional<ExrFile> exr = finished_frame(work.report.file, wanted_frame(pipeline, work), why);
     if (!exr) {
-        if (!why.empty()) say(pipeline, work, "is rendered again: " + why);
+        if (!why.empty()) say(pipeline, work, "rendering again: " + why);
         return false;
     }
     if (pipeline.request.png) write_picture(pipeline, color_of(*exr), work.report);

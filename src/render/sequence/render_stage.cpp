@@ -55,8 +55,7 @@ void warm_up(const Pipeline& pipeline, Work& work, History& history) {
 void say_forecast(const Pipeline& pipeline, const Work& work, double seconds) {
     constexpr double long_work = 10;
     if (seconds < long_work) return;
-    if (seconds == infinity)
-        return say(pipeline, work, "will not get to the error that is wanted: it may be too small");
+    if (seconds == infinity) return say(pipeline, work, "cannot reach the target error: it may be too small");
     say(pipeline, work, "will take about " + seconds_text(seconds));
 }
 
@@ -69,7 +68,8 @@ bool missed_by_plan(const RenderPlan& plan, const RenderRequest& request, const 
 void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
     const RenderPlan& plan = pipeline.plan;
     say(pipeline, work,
-        std::string(plan.mode->name) + " is too far off: rendered again with " + std::string(main_mode().name));
+        std::string(plan.mode->name) + " misses the target error; rendering again with " +
+            std::string(main_mode().name));
     work.report.mode = main_mode().name;
     work.by = RenderPlan{&main_mode(), *plan.wanted, plan.certificate, nullptr, plan.wanted};
     Goal goal{pipeline.request.target_error, 0, pipeline.request.quality};
@@ -89,14 +89,14 @@ void render_own_part(const Pipeline& pipeline, const FrameOptions& options, Work
     std::string why;
     Checkpoints checkpoints{request.checkpoint_seconds};
     if (request.resume) checkpoints.last = read_checkpoint(file, work.hash, request.grouping, why);
-    if (checkpoints.last) say(pipeline, work, "goes on from " + file.string());
-    if (!why.empty()) say(pipeline, work, "begins again: the checkpoint " + why);
+    if (checkpoints.last) say(pipeline, work, "resumes from " + file.string());
+    if (!why.empty()) say(pipeline, work, "starts over: the checkpoint file " + why);
     checkpoints.keep = [&](const FramePart& part) {
         try {
             write_part(file, part, provenance_of(pipeline.scene, request, pipeline.plan, work.view, work.hash, {}),
                        request.grouping);
         } catch (const Error& error) {
-            say(pipeline, work, std::string("goes on without a checkpoint: ") + error.what());
+            say(pipeline, work, std::string("continues without a checkpoint: ") + error.what());
         }
     };
     const PartRange range = range_of(request.grouping, mode, work.view);

@@ -16,11 +16,11 @@ std::vector<std::string> names_of(const ExrFile& exr) {
 
 std::string difference(const ExrFile& exr, const WantedFrame& wanted) {
     const auto hash = exr.attributes.find("tyndall:hash");
-    if (hash == exr.attributes.end()) return "it does not say how it was made";
+    if (hash == exr.attributes.end()) return "its header lacks tyndall:hash";
     if (exr.display != wanted.display || exr.low != wanted.low || exr.size != wanted.size) return "its size differs";
     if (names_of(exr) != wanted.channels) return "its layers differ";
     if (hash->second != wanted.hash) return "scene, fog or settings have changed";
-    if (!exr.is_unchanged) return "its bytes are not those that were written";
+    if (!exr.is_unchanged) return "its contents do not match its checksum";
     return {};
 }
 }

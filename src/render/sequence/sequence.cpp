@@ -51,7 +51,7 @@ std::string error_text(const FrameStats& stats, const RenderRequest& request) {
     if (!stats.noise) return {};
     std::string text = stats.is_noise_alone() ? ", noise " : ", error ";
     text += formatted("%.3g, at most %.3g", stats.error()->error, stats.error()->bound);
-    if (request.target_error > 0) text += formatted(" (wanted %.3g)", request.target_error);
+    if (request.target_error > 0) text += formatted(" (target %.3g)", request.target_error);
     if (stats.integrator)
         text += formatted(": noise %.3g, integrator %.3g (%s)", stats.noise->error, stats.integrator->error.error,
                           stats.integrator->candidate.c_str());
@@ -86,7 +86,7 @@ void write(Pipeline& pipeline, Work& work) {
 
     std::string text = formatted("%.2f s -> ", report.seconds) + report.file + error_text(report.stats, request);
     if (report.stats.moments > 1) text += formatted(", motion blur of %d moments", report.stats.moments);
-    if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " samples not finite)";
+    if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " non-finite samples)";
     say(pipeline, work, text);
 }
 

@@ -9,7 +9,7 @@ namespace tyndall {
 namespace {
 void check_aim(const CameraSource& camera, const Field& field) {
     if (camera.position.constant() && camera.target.constant() && camera.position.values[0] == camera.target.values[0])
-        refuse(field.member("target"), "is where the camera stands: there is no direction to look in");
+        refuse(field.member("target"), "is the same point as position: the camera has no viewing direction");
     for (const vec3 up : camera.up.values)
         if (up == vec3(0)) refuse(field.member("up"), "has no direction: its length is 0");
 }
@@ -19,10 +19,10 @@ void read_lens(const Field& field, CameraSource& camera) {
     const Field aperture = field.member("aperture_radius"), focus = field.member("focus_distance");
     const Field blades = field.member("aperture_blades"), turn = field.member("blade_rotation");
     for (const Field& given : {focus, blades, turn})
-        if (given && !aperture) refuse(given, "says nothing without aperture_radius");
-    if (turn && !blades) refuse(turn, "says nothing without aperture_blades");
+        if (given && !aperture) refuse(given, "has no effect without aperture_radius");
+    if (turn && !blades) refuse(turn, "has no effect without aperture_blades");
     if (!aperture) return;
-    if (camera.ortho_height > 0) refuse(aperture, "is for perspective cameras: this one is orthographic");
+    if (camera.ortho_height > 0) refuse(aperture, "is for perspective cameras only; this one is orthographic");
     if (!focus && camera.node >= 0) refuse(field, "needs focus_distance: a camera of the glTF has no target");
     camera.aperture = keyed_number(aperture);
     if (focus) camera.focus = keyed_number(focus);
@@ -36,7 +36,8 @@ std::vector<float> shutter_curve(const Field& field) {
         return field.json->string == "triangle" ? std::vector<float>{0, 1, 0} : std::vector<float>{};
     std::vector<float> curve;
     for (size_t i = 0; i < field.json->items.size(); ++i) curve.push_back(read_number(field.item(i)));
-    if (std::ranges::all_of(curve, [](float value) { return value == 0; })) refuse(field, "lets no light in");
+    if (std::ranges::all_of(curve, [](float value) { return value == 0; }))
+        refuse(field, "is 0 at all times: the shutter lets no light in");
     return curve;
 }
 
@@ -46,7 +47,7 @@ void read_shutter(const Field& field, CameraSource& camera) {
     shutter.open = field.member("open") ? field.member("open").json->number : 0;
     shutter.close = field.member("close").json->number;
     if (shutter.close < shutter.open)
-        refuse(field, formatted("runs backwards: it opens at %g and closes at %g", shutter.open, shutter.close));
+        refuse(field, formatted("closes before it opens: open is %g, close is %g", shutter.open, shutter.close));
     if (const Field curve = field.member("curve")) shutter.curve = shutter_curve(curve);
 }
 
@@ -69,7 +70,7 @@ CameraSource camera_source(const Field& field, std::string_view default_name, dv
 
     camera.vertical_fov = glm::radians(45.0f);
     const Field fov = field.member("vertical_fov"), height = field.member("ortho_height");
-    if (fov && height) refuse(height, "and vertical_fov exclude each other: a camera is orthographic or not");
+    if (fov && height) refuse(height, "cannot be combined with vertical_fov: a camera is orthographic or perspective");
     if (fov) camera.vertical_fov = keyed_degrees(fov);
     if (height) camera.ortho_height = read_number(height);
     if (const Field near = field.member("near")) camera.near = read_number(near);
@@ -109,7 +110,7 @@ CameraSource* under_lens(const Field& field, Scene& scene) {
 void add(const CameraSource& camera, const Field& field, Scene& scene) {
     if (index_of(scene, camera.name) >= 0)
         refuse(field.member("name") ? field.member("name") : field,
-               "another camera has the name \"" + camera.name + "\" already");
+               "another camera already has the name \"" + camera.name + "\"");
     scene.cameras.push_back(camera);
 }
 }

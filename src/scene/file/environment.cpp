@@ -11,7 +11,7 @@ constexpr const char* map_fields[] = {"color", "sky", "image"};
 void check_fields(const Field& field) {
     for (const auto& [name, value] : field.json->members)
         if (std::ranges::find(own_fields, name) == std::end(own_fields))
-            refuse(field.member(name), "is for lights with a place or a direction; this light is an environment");
+            refuse(field.member(name), "does not apply to environment lights");
 }
 
 bool has_map(const Field& field) {
@@ -24,7 +24,7 @@ void show(const Field& field, const EnvironmentSource& environment, Background& 
     const Field visible = field.member("visible");
     const bool wanted = !visible || field.json->boolean_or("visible", true);
     if (background.stated) {
-        if (visible && wanted) refuse(visible, "the scene has a background, which is what is seen");
+        if (visible && wanted) refuse(visible, "the scene has a background, and the camera sees that instead");
         return;
     }
     if (!wanted) return;
@@ -51,10 +51,10 @@ void share_background(const Field& field, const Scene& scene, EnvironmentSource&
     if (!scene.background.stated)
         refuse(field, "an environment needs a color, a sky or an image, or the scene's background");
     if (scene.background.kind == BackgroundKind::image && !scene.background.lat_long)
-        refuse(field, "the background is a plate; light comes from one with the projection \"lat_long\" only");
+        refuse(field, "the background is a plate; it lights the scene only with the projection \"lat_long\"");
     for (const char* name : {"visible", "rotation"})
         if (const Field given = field.member(name))
-            refuse(given, "is for environments with a color, a sky or an image; this one is the background");
+            refuse(given, "is for environments with their own color, sky or image; this one uses the background");
     environment.map = scene.background;
 }
 }
@@ -67,11 +67,11 @@ void read_environment(const Field& root, Scene& scene) {
     for (size_t i = 0; i < lights.json->items.size(); ++i) {
         const Field field = lights.item(i);
         if (!is_environment(field)) continue;
-        if (scene.environment) refuse(field, "a second environment; a scene has one");
+        if (scene.environment) refuse(field, "a scene can have only one environment light");
         check_fields(field);
         EnvironmentSource environment = read_one(field, scene);
         if (std::ranges::find(scene.lights, environment.name, &LightSource::name) != scene.lights.end())
-            refuse(field.member("name") ? field.member("name") : field, "another light has this name already");
+            refuse(field.member("name") ? field.member("name") : field, "another light already has this name");
         if (has_map(field)) {
             read_map(field, scene, environment.map);
             if (const Field rotation = field.member("rotation")) {

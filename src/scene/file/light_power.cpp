@@ -16,7 +16,8 @@ LightUnit unit_named(const Field& unit, const LightSource& light) {
     if (name == kind.unit) return LightUnit::native;
     if (name == "candela" && kind.area) return LightUnit::candela;
     if (name != "lumen" || kind.distant)
-        refuse(unit, "is not for a " + std::string(kind.noun) + "; its intensity is in " + std::string(kind.unit) +
+        refuse(unit, "does not apply to a " + std::string(kind.noun) + "; its intensity is in " +
+                         std::string(kind.unit) +
                          (kind.distant ? " or watt"
                           : kind.area  ? ", candela, lumen or watt"
                                        : ", lumen or watt"));
@@ -26,19 +27,19 @@ LightUnit unit_named(const Field& unit, const LightSource& light) {
 void read_unit(const Field& field, LightSource& light) {
     const Field unit = field.member("unit"), efficacy = field.member("efficacy"), spread = field.member("spread");
     const Field intensity = field.member("intensity");
-    if (unit && !intensity) refuse(unit, "says nothing without an intensity");
+    if (unit && !intensity) refuse(unit, "has no effect without an intensity");
     if (intensity) light.unit = unit ? unit_named(unit, light) : LightUnit::native;
     const bool watts = intensity && light.unit == LightUnit::watt;
     if (watts && !efficacy)
-        refuse(unit, "needs an efficacy in lumens per watt: some 15 for a filament, 100 for an LED, 683 for what "
-                     "Blender calls watts");
+        refuse(unit, "needs an efficacy in lumens per watt: about 15 for an incandescent lamp, 100 for an LED, 683 "
+                     "for Blender's watts");
     if (efficacy && !watts) refuse(efficacy, "is for an intensity in watts only");
     if (efficacy) light.efficacy = read_number(efficacy);
     if (!spread) return;
     if (!has_cone(light))
         refuse(spread, "is for spots only; this light is a " + std::string(traits_of(light.kind).noun));
     if (light.unit == LightUnit::native || light.profile)
-        refuse(spread, "is for lumens and watts without a profile only");
+        refuse(spread, "applies only to an intensity in lumens or watts without a profile");
     light.whole_sphere = spread.json->string == "sphere";
 }
 }
@@ -51,7 +52,8 @@ void read_light_power(const Field& field, LightSource& light) {
     if (const Field up = field.member("up")) {
         if (!light.profile && !light.gobo && light.kind != LightKind::rectangle)
             refuse(up, "is for rectangles and lights with a profile or a gobo only");
-        if (light.node >= 0) refuse(up, "is that of the light's node; a light that is placed here can have its own");
+        if (light.node >= 0)
+            refuse(up, "is taken from the light's glTF node; give the light a position and a direction to set its own");
         light.up = keyed_vector(up);
     }
 }
@@ -73,8 +75,7 @@ void read_profile(const Field& field, Scene& scene, LightSource& light) {
     light.profile = read_profile(bytes, path.string(), scene);
     if (const Field rotate = ies.member("rotate")) light.profile_turn = keyed_degrees(rotate);
     if (multiplier && field.member("intensity"))
-        refuse(multiplier,
-               "and intensity exclude each other: either the file says how bright the light is or the scene");
+        refuse(multiplier, "cannot be combined with intensity: either the file or the scene sets the brightness");
     light.unit = LightUnit::profile, light.intensity = 1.0f;
     if (multiplier) light.intensity = keyed_number(multiplier);
 }

@@ -34,7 +34,7 @@ void check_fields(const Field& field, const LightSource& light) {
     only("angle", kind.distant, "suns");
     for (const char* name : {"sky", "image", "rotation"}) only(name, false, "environments");
     if (const Field target = field.member("target"); target && field.member("direction"))
-        refuse(target, "and direction exclude each other");
+        refuse(target, "cannot be combined with direction");
 }
 
 // Position and aim of the light: given here, or left to the node of the glTF.
@@ -67,7 +67,7 @@ void read_face(const Field& field, LightSource& light) {
         if (!given) refuse(field, "a " + std::string(traits_of(light.kind).noun) + " needs a " + name);
         value = keyed_number(given);
         for (const float metres : value.values)
-            if (!(metres > 0)) refuse(given, "is not above 0");
+            if (!(metres > 0)) refuse(given, "must be greater than 0");
     };
     if (light.kind == LightKind::rectangle)
         size("width", light.width), size("height", light.height);
@@ -144,7 +144,7 @@ void read_lights(const Field& root, Scene& scene) {
         if (is_environment(field)) continue;
         LightSource* known = field.member("name") ? find(scene, field.json->string_or("name", "")) : nullptr;
         if (known && known >= scene.lights.data() + of_gltf)
-            refuse(field.member("name"), "another light has this name already");
+            refuse(field.member("name"), "another light already has this name");
         if (known && field.member("type") && kind_named(field.member("type").json->string) != known->kind)
             refuse(field.member("type"), std::string("the light of the glTF is a ") +
                                              std::string(traits_of(known->kind).noun) + "; its type cannot be changed");

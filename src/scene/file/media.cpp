@@ -108,7 +108,8 @@ void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
         medium.sequence.offset = static_cast<int>(sequence.json->number_or("offset", 0));
         const Field blend = sequence.member("blend");
         medium.blends = blend && blend.json->boolean;
-        if (medium.blends && medium.sequence.files.empty()) refuse(blend, "is of numbered files, and this is one");
+        if (medium.blends && medium.sequence.files.empty())
+            refuse(blend, "needs a numbered sequence; this is a single file");
     }
 
     // The first file's metadata applies to the whole sequence.

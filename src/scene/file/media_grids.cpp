@@ -54,7 +54,7 @@ GridSource grid_source(const Field& field, const char* usual, const MediumSource
 void read_density(const Field& field, const Field& density, MediumSource& medium, Scene& scene) {
     const GridSource source = grid_source(density, "", medium, scene);
     const std::string own = medium.density_grid;
-    if (!source.grids[0].empty() && !own.empty()) refuse(field.member("grid"), "is said in \"grids\" as well");
+    if (!source.grids[0].empty() && !own.empty()) refuse(field.member("grid"), "is also given in \"grids\"");
     medium.sequence = source.sequence, medium.density_map = source.map;
     medium.density_grid = source.grids[0].empty() ? own : source.grids[0];
 }
@@ -64,9 +64,9 @@ VelocitySource velocity_source(const Field& field, const Field& velocity, const 
     source.grid = grid_source(velocity, "vel", medium, scene);
     if (const Field unit = field.member("velocity_unit")) source.per_frame = unit.json->string == "frame";
     if (const Field scale = field.member("velocity_scale")) source.scale = read_number(scale);
-    if (medium.blends) refuse(velocity, "moves the fog, and \"blend\" of its sequence mixes it: say one of them");
+    if (medium.blends) refuse(velocity, "cannot be combined with the \"blend\" of the sequence; use one of them");
     if (medium.sequence.mode == SequenceMode::ping_pong)
-        refuse(velocity, "says nothing of files that are played backwards, as \"ping_pong\" does");
+        refuse(velocity, "cannot be used with \"ping_pong\", which plays files backwards");
     return source;
 }
 
@@ -77,15 +77,16 @@ BlackbodySource blackbody_source(const Field& field, const MediumSource& medium,
     if (const Field scale = field.member("emission_scale")) source.scale = keyed_number(scale);
     if (const Field tint = field.member("tint")) source.tint = keyed_color(tint);
     if (const Field intensity = field.member("intensity")) {
-        if (source.kind != BlackbodyKind::cycles) refuse(intensity, "is of the convention \"cycles\"");
+        if (source.kind != BlackbodyKind::cycles) refuse(intensity, "applies only to the convention \"cycles\"");
         source.intensity = read_number(intensity);
     }
     const Field kirchhoff = field.member("kirchhoff");
-    if (kirchhoff && source.kind != BlackbodyKind::kelvin) refuse(kirchhoff, "is of the convention \"kelvin\"");
+    if (kirchhoff && source.kind != BlackbodyKind::kelvin)
+        refuse(kirchhoff, "applies only to the convention \"kelvin\"");
     source.by_absorption = source.kind == BlackbodyKind::pbrt || (kirchhoff && kirchhoff.json->boolean);
     const bool absorbs = std::ranges::any_of(medium.extinction.values, [](float value) { return value > 0; });
     if (source.by_absorption && !absorbs)
-        warn(scene, field.place() + ": emits as much as the fog absorbs, which is nothing with an extinction of 0");
+        warn(scene, field.place() + ": emission is proportional to absorption, which is 0 because extinction is 0");
     return source;
 }
 
@@ -103,7 +104,7 @@ void check_together(const Field& grids, const Field& blackbody) {
     if (blackbody && !temperature)
         refuse(blackbody, "needs a temperature: \"grids\": {\"temperature\": \"temperature\"}");
     for (const Field& field : {temperature, flame})
-        if (field && !blackbody) refuse(field, "says nothing without \"blackbody\"");
+        if (field && !blackbody) refuse(field, "has no effect without \"blackbody\"");
 }
 }
 
@@ -126,7 +127,8 @@ void read_grids(const Field& field, MediumSource& medium, Scene& scene) {
     }
     if (!medium.velocity)
         for (const char* name : {"velocity_unit", "velocity_scale"})
-            if (const Field said = field.member(name)) refuse(said, "says nothing without a \"velocity\" in \"grids\"");
+            if (const Field said = field.member(name))
+                refuse(said, "has no effect without a \"velocity\" in \"grids\"");
     if (medium.emission_grid && !field.member("emission")) medium.emission = vec3(1);
     if (blackbody) medium.blackbody = blackbody_source(blackbody, medium, scene);
 }

@@ -55,11 +55,11 @@ std::vector<int> instances_named(const Scene& scene, const std::string& name) {
 void read_objects(const Field& root, Scene& scene) {
     const Field objects = root.member("objects");
     if (!objects) return;
-    if (!root.member("gltf")) refuse(objects, "says nothing without a glTF");
+    if (!root.member("gltf")) refuse(objects, "has no effect without a glTF");
     std::vector<std::string> known;
     for (size_t i = 0; i < objects.json->items.size(); ++i) {
         const Field object = objects.item(i), name = object.member("name");
-        if (std::ranges::count(known, name.json->string)) refuse(name, "another object has this name already");
+        if (std::ranges::count(known, name.json->string)) refuse(name, "another object already has this name");
         known.push_back(name.json->string);
         for (const int index : instances_of(name, scene)) {
             Instance& instance = scene.instances[static_cast<size_t>(index)];

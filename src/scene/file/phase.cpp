@@ -90,12 +90,11 @@ Phase read_table(const Field& field, Scene& scene) {
     const std::vector<PhaseEntry> entries = read_entries(field, scene);
     PhaseTable table = make_table(std::span(entries), notes);
     if (!(std::abs(notes.kept - 1) < 0.01))
-        refuse(field,
-               "the values change too fast with the angle: steps of 0.01 degrees are the finest that can be kept");
+        refuse(field, "the values vary too fast with the angle; the finest resolution is 0.01 degrees");
     if (std::abs(notes.integral - 1) > hardly_off)
-        warn(scene, field.place() +
-                        formatted(": its values add up to %.6g over the sphere, not to 1; they are divided by that",
-                                  notes.integral));
+        warn(scene,
+             field.place() + formatted(": its values integrate to %.6g over the sphere, not to 1; they are normalized",
+                                       notes.integral));
     return table_phase(PhaseKind::table, std::move(table));
 }
 
@@ -107,22 +106,22 @@ Phase read_series(const Field& field, Scene& scene) {
     if (!(coefficients[0] > 1e-30 && coefficients[0] < 1e30)) refuse(field, "the first coefficient must be above 0");
     for (size_t l = 1; l < coefficients.size(); ++l)
         if (std::abs(coefficients[l]) > (2.0 * static_cast<double>(l) + 1) * coefficients[0] * (1 + 1e-6))
-            refuse(field, formatted("coefficient %zu is %.6g; no phase function has one beyond %zu times the first", l,
+            refuse(field, formatted("coefficient %zu is %.6g; its magnitude cannot exceed %zu times the first", l,
                                     coefficients[l], 2 * l + 1));
     PhaseTableNotes notes;
     PhaseTable table = make_table(std::span(coefficients), notes);
     if (notes.negative > max_negative)
-        refuse(field,
-               formatted("the series is below 0 at some angles, by %.2g %% of its light: it is cut too early, or "
-                         "its coefficients lack the factor 2 l + 1",
-                         100 * notes.negative));
+        refuse(field, formatted("the series is negative at some angles, by %.2g %% of its light: it is truncated too "
+                                "early, or its coefficients lack the factor 2 l + 1",
+                                100 * notes.negative));
     if (std::abs(notes.integral - 1) > hardly_off)
         warn(scene, field.place() +
                         formatted(": the first coefficient is %.6g, not 1; all are divided by that", notes.integral));
     if (notes.negative > 1e-6)
-        warn(scene, field.place() +
-                        formatted(": the series is below 0 at some angles, by %.2g %% of its light; these values are 0",
-                                  100 * notes.negative));
+        warn(scene,
+             field.place() +
+                 formatted(": the series is negative at some angles, by %.2g %% of its light; it is clamped to 0 there",
+                           100 * notes.negative));
     return table_phase(PhaseKind::legendre, std::move(table));
 }
 
@@ -145,13 +144,13 @@ PhaseSource read_object(const Field& field, Scene& scene) {
 void read_phase(const Field& medium_field, MediumSource& medium, Scene& scene) {
     const Field phase = medium_field.member("phase"), g = medium_field.member("g");
     if (phase && phase.json->kind == Json::Kind::object) {
-        if (g) refuse(g, "has no meaning here: phase is an object and says all of it");
+        if (g) refuse(g, "cannot be given here: phase is an object with its own parameters");
         medium.phase = read_object(phase, scene);
     } else if (phase) {
         medium.phase.kind = kind_named(phase.json->string);
     }
     if (!medium.phase.takes_medium_g()) {
-        if (g) refuse(g, "has no meaning for the phase function " + quote_json(phase.json->string));
+        if (g) refuse(g, "does not apply to the phase function " + quote_json(phase.json->string));
         medium.g = 0.0f;
         return;
     }

@@ -56,7 +56,7 @@ void warn_of_endless_fog(Scene& scene) {
     if (sun == scene.lights.end()) return;
     for (const MediumSource& medium : scene.media)
         if (medium.kind == MediumKind::homogeneous && !is_finite(medium.bounds.low) && medium.extinction.at(0) > 0)
-            warn(scene, scene.file.string() + ": medium " + medium.name + " fills all space, so that no light of " +
+            warn(scene, scene.file.string() + ": medium " + medium.name + " fills all space, so no light from " +
                             sun->name + " gets through; give it \"bounds\"");
 }
 
@@ -67,7 +67,7 @@ void read_scene_document(const Json& document, Scene& scene, const LoadOptions& 
         load_gltf(named_file(gltf, scene), options, scene);
         if (!document.boolean_or("gltf_lights", true)) scene.lights.clear();
     } else if (const Field lights = root.member("gltf_lights")) {
-        refuse(lights, "says nothing without a glTF");
+        refuse(lights, "has no effect without a glTF");
     }
     scene.origin = far_origin(root, scene);
     read_cameras(root, scene);
@@ -105,8 +105,8 @@ namespace {
 Scene load_volume(const std::filesystem::path& file, const LoadOptions& options) {
     Scene scene = load_scene_text(volume_scene_text(file), file, options);
     warn(scene, file.string() +
-                    ": a volume by itself; a sun of 3 lux, some ambient light and a camera that sees all of it "
-                    "are used, and " +
+                    ": a volume by itself; using a sun of 3 lux, some ambient light, a camera that sees all of "
+                    "it, and " +
                     formatted("%.3g", static_cast<double>(scene.media[0].extinction.at(0))) +
                     " per metre as its extinction at density 1");
     return scene;
@@ -119,7 +119,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
     const std::string extension = lower_extension(file);
     if (is_volume_name(file)) return load_volume(file, options);
     for (const char* other : {".blend", ".fbx", ".obj", ".abc", ".usd", ".usda", ".usdc", ".usdz"})
-        if (extension == other) refuse(file.string(), "is not read here; export the scene as glTF, .glb or .gltf");
+        if (extension == other) refuse(file.string(), "is not supported; export the scene as glTF (.glb or .gltf)");
     for (const char* other : {".ies", ".hdr", ".pic", ".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff"})
         if (extension == other)
             refuse(file.string(), "is not a scene; name it in the lights or the background of a scene file");

@@ -33,8 +33,7 @@ std::string volume_scene_text(const std::filesystem::path& vdb) {
     const VdbGridInfo* fog = nullptr;
     for (const VdbGridInfo& grid : info.grids)
         if (grid.is_fog) fog = &grid;
-    if (!fog)
-        refuse(vdb.string(), "it is not clear which of its grids is the fog; name one as \"grid\" in a scene file");
+    if (!fog) refuse(vdb.string(), "cannot tell which grid is the density; name one as \"grid\" in a scene file");
 
     // The default camera and lights for a box of the volume's bounds.
     const Box voxels{vec3(fog->active_low) - 0.5f, vec3(fog->active_high) + 0.5f};

@@ -50,7 +50,7 @@ void add_missing_light_and_fog(Scene& scene) {
     fog.height_base = bounds.low.y, fog.height_falloff = 0.5f * diagonal;
     fog.bounds = {bounds.low - 3 * diagonal, bounds.high + 3 * diagonal};
     scene.media.push_back(fog);
-    warn(scene, file + ": a glTF has no fog; thin fog of " + formatted("%.3g", fog.extinction.values[0]) +
-                    " per metre that thins out upwards is used");
+    warn(scene, file + ": a glTF has no fog; height fog with an extinction of " +
+                    formatted("%.3g", fog.extinction.values[0]) + " per metre is used");
 }
 }

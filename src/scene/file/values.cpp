@@ -25,7 +25,7 @@ template<class T, class Read> Keyed<T> keyed(const Field& field, const Read& rea
         const Field key = keys.item(i);
         result.times.push_back(read_number(key.item(0)));
         result.values.push_back(read(key.item(1)));
-        if (i && !(result.times[i] > result.times[i - 1])) refuse(key.item(0), "times must go up from key to key");
+        if (i && !(result.times[i] > result.times[i - 1])) refuse(key.item(0), "key times must increase");
     }
     result.interpolation = interpolation_named(field.json->string_or("interpolation", "linear"));
     result.loop = field.json->boolean_or("loop", false);
@@ -118,7 +118,7 @@ Keyed<vec3> difference(const Keyed<vec3>& a, const Keyed<vec3>& b, const Field& 
     const bool both = !a.constant() && !b.constant();
     if (both && (a.loop || b.loop) &&
         !(a.loop == b.loop && a.times.front() == b.times.front() && length(a) == length(b)))
-        refuse(field, "two animations that act together must loop over the same time");
+        refuse(field, "the animations of position and target must loop over the same time");
 
     std::vector<float> times = leading.times;
     if (both) times.insert(times.end(), b.times.begin(), b.times.end());

@@ -34,11 +34,11 @@ Samples samples_of(GltfDocument& document, const tinygltf::AnimationSampler& sam
                  needed = samples.times.size() * samples.stride * many;
     if (has != needed)
         refuse(document.place(pointer + "/output"),
-               "has " + std::to_string(has) + " elements, where " + std::to_string(needed) + " are needed");
+               "has " + std::to_string(has) + " elements, but " + std::to_string(needed) + " are needed");
     for (const float value : samples.values)
-        if (!std::isfinite(value)) refuse(document.place(pointer + "/output"), "holds a value that is not a number");
+        if (!std::isfinite(value)) refuse(document.place(pointer + "/output"), "has a non-finite value");
     for (const float time : samples.times)
-        if (!std::isfinite(time)) refuse(document.place(pointer + "/input"), "holds a time that is not a number");
+        if (!std::isfinite(time)) refuse(document.place(pointer + "/input"), "has a non-finite time");
     return samples;
 }
 
@@ -49,7 +49,7 @@ template<class T> Keyed<T> keys_of(GltfDocument& document, const Samples& sample
     keys.values.clear();
     for (size_t i = 0; i < samples.times.size(); ++i) {
         if (!keys.times.empty() && samples.times[i] <= keys.times.back()) {
-            document.count("keys that do not go forward in time are left out");
+            document.count("keys whose time does not increase are ignored");
             continue;
         }
         keys.times.push_back(samples.times[i]);
@@ -68,7 +68,7 @@ void make_unit(Keyed<quat>& keys) {
 }
 
 template<class T> void play(GltfDocument& document, const Keyed<T>& keys, Keyed<T>& target) {
-    if (!target.times.empty()) return document.count("animations of things that already move are left out");
+    if (!target.times.empty()) return document.count("animations of properties that are already animated are ignored");
     target = keys;
 }
 
@@ -89,7 +89,7 @@ void add_channel(GltfDocument& document, const tinygltf::AnimationChannel& chann
     if (index < 0) return;
     if (channel.target_path == "weights") return play_weights(document, channel.target_node, sampler, pointer);
     Node& node = document.scene->nodes[index];
-    if (node.matrix) return document.count("animations of nodes with a matrix are left out");
+    if (node.matrix) return document.count("animations of nodes with a matrix are ignored");
     if (channel.target_path == "translation") {
         play(document, keys_of<vec3>(document, samples_of(document, sampler, 3, 1, pointer)), node.translation);
         node.remainder = dvec3(0);
@@ -100,7 +100,7 @@ void add_channel(GltfDocument& document, const tinygltf::AnimationChannel& chann
         make_unit(keys);
         play(document, keys, node.rotation);
     } else {
-        document.count("animations of things that are not known are left out");
+        document.count("animations of unknown properties are ignored");
     }
 }
 }

@@ -15,27 +15,28 @@ uint32_t word(std::string_view bytes, size_t offset) {
 
 void split_chunks(GltfContainer& container, const std::string& file) {
     std::string_view rest = container.bytes;
-    if (rest.size() < 20) refuse(file, "the GLB is cut: its header and first chunk need 20 bytes");
+    if (rest.size() < 20) refuse(file, "the GLB is truncated: its header and first chunk need 20 bytes");
     if (const uint32_t version = word(rest, 4); version != 2)
         refuse(file, "GLB version " + std::to_string(version) + "; only glTF 2.0 can be read");
     const uint64_t length = word(rest, 8);
     if (length > rest.size())
-        refuse(file, "the GLB is cut: its header says " + std::to_string(length) + " bytes, the file has " +
+        refuse(file, "the GLB is truncated: its header states " + std::to_string(length) + " bytes, the file has " +
                          std::to_string(rest.size()));
-    if (length < 20) refuse(file, "the GLB header says " + std::to_string(length) + " bytes: too few for a chunk");
+    if (length < 20) refuse(file, "the GLB header states " + std::to_string(length) + " bytes: too few for a chunk");
     if (length < rest.size())
-        container.warnings.push_back(std::to_string(rest.size() - length) + " bytes after the end of the GLB ignored");
+        container.warnings.push_back(std::to_string(rest.size() - length) +
+                                     " bytes after the end of the GLB are ignored");
 
     rest = rest.substr(12, length - 12);
     for (size_t chunk = 0; !rest.empty(); ++chunk) {
         const std::string name = "GLB chunk " + std::to_string(chunk);
-        if (rest.size() < 8) refuse(file, name + " is cut: its header needs 8 bytes");
+        if (rest.size() < 8) refuse(file, name + " is truncated: its header needs 8 bytes");
         const uint64_t size = word(rest, 0);
         const uint32_t type = word(rest, 4);
         if (size > rest.size() - 8)
-            refuse(file, name + " says " + std::to_string(size) + " bytes, but " + std::to_string(rest.size() - 8) +
+            refuse(file, name + " states " + std::to_string(size) + " bytes, but " + std::to_string(rest.size() - 8) +
                              " are left");
-        if (size % 4) refuse(file, name + " has " + std::to_string(size) + " bytes, which is no multiple of 4");
+        if (size % 4) refuse(file, name + " has " + std::to_string(size) + " bytes, which is not a multiple of 4");
         if ((type == json_chunk) != (chunk == 0))
             refuse(file, chunk ? name + " is a second JSON chunk" : "the first GLB chunk is not JSON");
         if (chunk == 0) {

@@ -54,9 +54,9 @@ void check_gltf_extensions(GltfDocument& document, const Json& json) {
         if (holds(compressed, name))
             refuse(place, "the meshes are compressed with " + name + ", which cannot be read; export without it");
         if (!holds(read, name) && !only_looks(name))
-            refuse(place, "needs the extension " + name + ", which is not known");
+            refuse(place, "needs the extension " + name + ", which is not supported");
     }
     for (const std::string& name : names_in(document, json, "extensionsUsed"))
-        if (!holds(read, name) && !holds(compressed, name)) document.warn("", "the extension " + name + " is left out");
+        if (!holds(read, name) && !holds(compressed, name)) document.warn("", "the extension " + name + " is ignored");
 }
 }

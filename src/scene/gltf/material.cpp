@@ -72,19 +72,19 @@ Image<vec4> decoded_image(GltfDocument& document, int index) {
         if (error.code == ExitCode::refused) throw;
         const std::string text = error.what(), place = pointer + "/uri: ";
         const size_t at = text.find(place); // strips the place, which the warning repeats
-        document.warn(pointer, "the material's colour is used instead: " +
+        document.warn(pointer, "the material's color is used instead: " +
                                    (at == text.npos ? text : text.substr(at + place.size())));
         return {};
     }
     const ImageFormat format = image_format(bytes);
     if (format != ImageFormat::png && format != ImageFormat::jpeg) {
-        document.warn(pointer, "the image is " + format_name(bytes) + "; the material's colour is used instead");
+        document.warn(pointer, "the image is " + format_name(bytes) + "; the material's color is used instead");
         return {};
     }
     try {
         return decode_texture(bytes, "");
     } catch (const Error& error) {
-        document.warn(pointer, std::string(error.what()) + "; the material's colour is used instead");
+        document.warn(pointer, std::string(error.what()) + "; the material's color is used instead");
         return {};
     }
 }
@@ -98,8 +98,8 @@ Image<vec4> fitted(GltfDocument& document, Image<vec4> image, int index) {
     document.texels += image.pixels.size();
     if (image.size != before)
         document.warn(gltf_pointer("images", index),
-                      "the image of " + std::to_string(before.x) + "x" + std::to_string(before.y) + " is used at " +
-                          std::to_string(image.size.x) + "x" + std::to_string(image.size.y));
+                      "the image is reduced from " + std::to_string(before.x) + "x" + std::to_string(before.y) +
+                          " to " + std::to_string(image.size.x) + "x" + std::to_string(image.size.y));
     return image;
 }
 
@@ -125,7 +125,7 @@ int scene_texture(GltfDocument& document, const TextureUse& use) {
     const tinygltf::Texture& source = document.model.textures[use.texture];
     if (source.source < 0) {
         document.warn(gltf_pointer("textures", use.texture),
-                      "has no PNG or JPEG; the material's colour is used instead");
+                      "has no PNG or JPEG; the material's color is used instead");
         return -1;
     }
     const auto [known, added] = document.textures.try_emplace(key_of(use, source), -1);
@@ -184,7 +184,7 @@ int gltf_material(GltfDocument& document, int index, int& uv_set) {
         document.materials.try_emplace(index, static_cast<int>(document.scene->materials.size()));
     if (!added) return known->second;
 
-    if (max_component(material.base_color) > 1.001f) document.count("base colours over 1 are taken for 1");
+    if (max_component(material.base_color) > 1.001f) document.count("base colors above 1 are clamped to 1");
     material.base_color = glm::min(material.base_color, vec3(1)), material.alpha = std::min(material.alpha, 1.0f);
     material.base_texture = scene_texture(document, base);
     material.emission = emission_of(source);
@@ -194,7 +194,7 @@ int gltf_material(GltfDocument& document, int index, int& uv_set) {
         if (material.emission_texture < 0) material.emission = vec3(0);
         if (base.texture >= 0 && base.uv_set != emissive.uv_set)
             document.warn(gltf_pointer("materials", index),
-                          "the emission uses another set of texture coordinates; the base colour's is used for both");
+                          "the emission uses another set of texture coordinates; the base color's is used for both");
     }
     if (source.alphaMode == "MASK") material.alpha_mode = AlphaMode::mask;
     if (source.alphaMode == "BLEND") material.alpha_mode = AlphaMode::blend;

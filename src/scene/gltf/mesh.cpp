@@ -214,14 +214,14 @@ bool has_data(const GltfDocument& document, const tinygltf::Primitive& primitive
 int scene_mesh(GltfDocument& document, const tinygltf::Primitive& primitive, const std::string& name,
                const std::string& pointer) {
     if (primitive.mode < TINYGLTF_MODE_TRIANGLES)
-        return document.count("primitives of points or lines are left out"), -1;
+        return document.count("primitives of points or lines are ignored"), -1;
     const auto position = primitive.attributes.find("POSITION");
-    if (position == primitive.attributes.end()) return document.count("primitives without positions are left out"), -1;
+    if (position == primitive.attributes.end()) return document.count("primitives without positions are ignored"), -1;
     for (const char* compression : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
         if (primitive.extensions.count(compression) && document.model.accessors[position->second].bufferView < 0)
             refuse(document.place(pointer), std::string("the mesh is compressed with ") + compression +
                                                 ", which cannot be read; export without it");
-    if (!has_data(document, primitive)) return document.count("primitives whose buffer has no data are left out"), -1;
+    if (!has_data(document, primitive)) return document.count("primitives whose buffer has no data are ignored"), -1;
 
     int uv_set = 0;
     Mesh mesh;
@@ -233,7 +233,7 @@ int scene_mesh(GltfDocument& document, const tinygltf::Primitive& primitive, con
         refuse(document.place(pointer), "the file has more than " + std::to_string(max_triangles) + " triangles");
     mesh.triangles = triangles_of(indices, primitive.mode);
     if (const size_t dropped = drop_non_finite(mesh.triangles, vertices.positions))
-        document.count("triangles with corners that are not numbers are left out", static_cast<int>(dropped));
+        document.count("triangles with non-finite corners are ignored", static_cast<int>(dropped));
     if (mesh.triangles.empty()) return -1;
 
     document.triangles += mesh.triangles.size();

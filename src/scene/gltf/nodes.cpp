@@ -16,7 +16,7 @@ vec3 triple(const std::vector<double>& values, vec3 otherwise) {
 quat turned(GltfDocument& document, float x, float y, float z, float w) {
     const float length = std::sqrt(x * x + y * y + z * z + w * w);
     if (length > 0 && std::isfinite(length)) return {w / length, x / length, y / length, z / length};
-    document.count("rotations of length 0 are taken for none");
+    document.count("rotations of zero or non-finite length are replaced by the identity");
     return {1, 0, 0, 0};
 }
 
@@ -25,9 +25,9 @@ void read_place(GltfDocument& document, const tinygltf::Node& source, Node& node
         mat4 matrix;
         for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = static_cast<float>(source.matrix[i]);
         if (matrix[0].w != 0 || matrix[1].w != 0 || matrix[2].w != 0 || matrix[3].w != 1)
-            document.count("matrices with perspective are used without it");
+            document.count("perspective parts of matrices are ignored");
         matrix[0].w = matrix[1].w = matrix[2].w = 0, matrix[3].w = 1;
-        if (std::abs(glm::determinant(glm::dmat3(matrix))) < 1e-30) document.count("nodes are scaled to nothing");
+        if (std::abs(glm::determinant(glm::dmat3(matrix))) < 1e-30) document.count("nodes have a scale of 0");
         node.matrix = matrix;
         for (int axis = 0; axis < 3; ++axis) node.remainder[axis] = source.matrix[12 + axis] - matrix[3][axis];
         return;
@@ -37,7 +37,7 @@ void read_place(GltfDocument& document, const tinygltf::Node& source, Node& node
         node.remainder[static_cast<int>(axis)] =
             source.translation[axis] - node.translation.values[0][static_cast<int>(axis)];
     const vec3 scale = triple(source.scale, vec3(1));
-    if (scale.x * scale.y * scale.z == 0) document.count("nodes are scaled to nothing");
+    if (scale.x * scale.y * scale.z == 0) document.count("nodes have a scale of 0");
     node.scale = scale;
     if (source.rotation.size() == 4)
         node.rotation = turned(document, static_cast<float>(source.rotation[0]), static_cast<float>(source.rotation[1]),
@@ -119,7 +119,7 @@ void add_instances(GltfDocument& document, int index, int node, const std::strin
         if (mesh.influences > 0 && mesh.joint_count <= joints)
             instance.skin = skin;
         else if (source.skin >= 0)
-            document.count("skinned meshes without joints that they could follow stand still");
+            document.count("skinned meshes without usable joints are not deformed");
         document.instances[index].push_back(static_cast<int>(scene.instances.size()));
         scene.instances.push_back(std::move(instance));
     }
@@ -151,7 +151,7 @@ void add_gpu_instances(GltfDocument& document, int index, const tinygltf::Value&
             node.rotation = turned(document, turns[4 * i], turns[4 * i + 1], turns[4 * i + 2], turns[4 * i + 3]);
         if (!sizes.empty()) node.scale = vec3(sizes[3 * i], sizes[3 * i + 1], sizes[3 * i + 2]);
         if (!is_finite(node.translation.values[0]) || !is_finite(node.scale.values[0])) {
-            document.count("instances at places that are not numbers are left out");
+            document.count("instances with a non-finite translation or scale are ignored");
             continue;
         }
         document.scene->nodes.push_back(std::move(node));
@@ -182,7 +182,8 @@ CameraSource camera_source(GltfDocument& document, const tinygltf::Camera& sourc
         return camera;
     }
     const float widest = glm::radians(170.0f);
-    if (source.perspective.yfov > widest) document.count("cameras that see more than 170 degrees see 170");
+    if (source.perspective.yfov > widest)
+        document.count("vertical fields of view above 170 degrees are clamped to 170");
     camera.vertical_fov = std::min(static_cast<float>(source.perspective.yfov), widest);
     camera.near = static_cast<float>(source.perspective.znear);
     if (source.perspective.zfar > 0) camera.far = static_cast<float>(source.perspective.zfar);
@@ -261,7 +262,7 @@ void add_gltf_cameras_and_lights(GltfDocument& document) {
         }
         if (const int index = light_index(node); index >= 0) {
             if (!known_light(model.lights[index].type)) {
-                document.count("lights of unknown types are left out");
+                document.count("lights of unknown types are ignored");
                 continue;
             }
             LightSource light = light_source(document, index);

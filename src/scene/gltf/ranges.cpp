@@ -16,8 +16,8 @@ void check_buffer_views(const GltfDocument& document) {
         if (!document.lacking[view.buffer].empty()) continue; // refused where it is read
         if (view.byteOffset > size || view.byteLength > size - view.byteOffset)
             refuse(document.place(gltf_pointer("bufferViews", i)),
-                   "bytes " + std::to_string(view.byteOffset) + " to " +
-                       std::to_string(view.byteOffset + view.byteLength) + " of a buffer that has " +
+                   "needs bytes " + std::to_string(view.byteOffset) + " to " +
+                       std::to_string(view.byteOffset + view.byteLength) + " of a buffer that has only " +
                        std::to_string(size));
     }
 }
@@ -36,7 +36,7 @@ void check_span(const GltfDocument& document, int view_index, uint64_t offset, u
     if (offset <= length && size <= length - offset && count - 1 <= (length - offset - size) / stride) return;
     refuse(document.place(pointer), std::to_string(count) + " elements of " + std::to_string(size) + " bytes, " +
                                         std::to_string(stride) + " apart, from byte " + std::to_string(offset) +
-                                        " do not fit buffer view " + std::to_string(view_index) + ", which has " +
+                                        " do not fit in buffer view " + std::to_string(view_index) + ", which has " +
                                         std::to_string(length) + " bytes");
 }
 
@@ -79,8 +79,8 @@ void check_nodes(const GltfDocument& document) {
             int& known = parent[nodes[i].children[c]];
             if (known >= 0)
                 refuse(document.place(gltf_pointer("nodes", i, "children/") + std::to_string(c)),
-                       "node " + std::to_string(nodes[i].children[c]) + " is a child of node " + std::to_string(known) +
-                           " already");
+                       "node " + std::to_string(nodes[i].children[c]) + " is already a child of node " +
+                           std::to_string(known));
             known = static_cast<int>(i);
         }
 
@@ -91,7 +91,7 @@ void check_nodes(const GltfDocument& document) {
         while (at >= 0 && !level[at] && ++steps <= max_levels) at = parent[at];
         const int above = at >= 0 && level[at] ? level[at] : 0;
         if (steps + above > max_levels)
-            refuse(document.place(gltf_pointer("nodes", i)), "its parents go in a circle, or more than 256 levels up");
+            refuse(document.place(gltf_pointer("nodes", i)), "its parents form a cycle, or go more than 256 levels up");
         int down = steps + above;
         for (int walk = static_cast<int>(i); walk >= 0 && !level[walk]; walk = parent[walk]) level[walk] = down--;
     }
@@ -101,8 +101,8 @@ void check_nodes(const GltfDocument& document) {
         for (size_t i = 0; i < roots.size(); ++i)
             if (parent[roots[i]] >= 0)
                 refuse(document.place(gltf_pointer("scenes", s, "nodes/") + std::to_string(i)),
-                       "node " + std::to_string(roots[i]) + " is no root: node " + std::to_string(parent[roots[i]]) +
-                           " holds it");
+                       "node " + std::to_string(roots[i]) + " is not a root: it is a child of node " +
+                           std::to_string(parent[roots[i]]));
     }
 }
 
@@ -112,7 +112,7 @@ void check_animations(const GltfDocument& document) {
         for (const tinygltf::AnimationChannel& channel : animation.channels)
             if (channel.sampler < 0 || static_cast<size_t>(channel.sampler) >= animation.samplers.size())
                 refuse(document.place(gltf_pointer("animations", a, "channels")),
-                       "sampler " + std::to_string(channel.sampler) + " does not exist; there are " +
+                       "sampler " + std::to_string(channel.sampler) + " does not exist; the number of samplers is " +
                            std::to_string(animation.samplers.size()));
     }
 }

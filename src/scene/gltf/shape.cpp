@@ -180,7 +180,7 @@ void check_gltf_needs(const Json& document, std::string_view file) {
     const std::vector<Json>& views = items_of(document, "bufferViews");
     for (size_t i = 0; i < views.size(); ++i)
         if (std::fmod(views[i].number_or("byteStride", 4), 4) != 0)
-            complain("bufferViews", i, "byteStride is no multiple of 4");
+            complain("bufferViews", i, "byteStride is not a multiple of 4");
     const std::vector<Json>&meshes = items_of(document, "meshes"), &accessors = items_of(document, "accessors");
     for (size_t i = 0; i < meshes.size(); ++i) {
         const std::vector<Json>& primitives = meshes[i].find("primitives")->items;

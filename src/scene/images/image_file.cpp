@@ -42,7 +42,7 @@ void check_length(std::string_view bytes, std::string_view where) {
 // stb_image's failure reasons are internal terms, not fit for users.
 [[noreturn]] void refuse_damaged(std::string_view where) {
     const std::string_view reason = stbi_failure_reason() ? stbi_failure_reason() : "";
-    refuse(where, reason == "outofdata" ? "the image is cut off" : "the image is cut off or damaged");
+    refuse(where, reason == "outofdata" ? "the image is truncated" : "the image is truncated or damaged");
 }
 
 // IEC 61966-2-1.
@@ -60,7 +60,7 @@ const std::array<float, 256>& linear_table() {
 // In the display window, black where the file has no pixels.
 Image<vec3> decode_openexr(std::string_view bytes, std::string_view where, std::string& note) {
     const ExrPicture file = decode_exr_picture(bytes, std::string(where));
-    if (file.foreign_primaries) note = "its colours are of other primaries than Rec.709, and are taken as they are";
+    if (file.foreign_primaries) note = "its primaries are not Rec.709; its colors are used without conversion";
     Image<vec3> image(file.display);
     const ivec2 begin = glm::max(file.low, ivec2(0)), end = glm::min(file.low + file.color.size, file.display);
     for (int y = begin.y; y < end.y; ++y)
@@ -134,9 +134,9 @@ Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::
             if (glm::any(glm::lessThan(pixel, vec3(0)))) pixel = glm::max(pixel, vec3(0)), ++negative;
         if (negative > 0)
             note += (note.empty() ? "" : "; ") + std::to_string(negative) +
-                    " pixels with negative light, which is set to 0";
+                    " pixels with negative values, which are set to 0";
         if (std::ranges::all_of(image.pixels, [](vec3 pixel) { return pixel == vec3(0); }))
-            note += std::string(note.empty() ? "" : "; ") + "the picture is black";
+            note += std::string(note.empty() ? "" : "; ") + "the image is black";
         return image;
     }
     const Image<vec4> texels = decode_texture(bytes, where);

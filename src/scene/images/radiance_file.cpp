@@ -32,7 +32,7 @@ struct Header {
     }
 };
 
-[[noreturn]] void refuse_cut_off(std::string_view where) { refuse(where, "the image is cut off"); }
+[[noreturn]] void refuse_cut_off(std::string_view where) { refuse(where, "the image is truncated"); }
 
 // The next line, without its line ending.
 std::string_view next_line(std::string_view bytes, size_t& at, std::string_view where) {
@@ -77,7 +77,7 @@ Header read_header(std::string_view bytes, std::string_view where) {
         const std::string_view name = line.substr(0, equals);
         std::string_view value = line.substr(equals + 1);
         if (name == "FORMAT" && next_word(value) != "32-bit_rle_rgbe")
-            refuse(where, "its pixels are not red, green, blue and an exponent, but \"" + printable(line, 60) + "\"");
+            refuse(where, "its pixel format is not 32-bit_rle_rgbe, but \"" + printable(line, 60) + "\"");
         if (name == "EXPOSURE") header.multiplied *= factor_of(value, line, where);
         if (name == "COLORCORR")
             for (int c = 0; c < 3; ++c) header.multiplied[c] *= factor_of(value, line, where);
@@ -119,7 +119,7 @@ void read_planes(Bytes& bytes, std::vector<Rgbe>& line) {
             const bool run = code > 128;
             const size_t count = run ? code - 128u : code;
             if (count == 0 || count > line.size() - i)
-                refuse(bytes.where, "the image is damaged: a run leaves its line");
+                refuse(bytes.where, "the image is damaged: a run exceeds its scanline");
             uint8_t value = run ? bytes.next() : 0;
             for (size_t k = 0; k < count; ++k) {
                 if (!run) value = bytes.next();
@@ -139,7 +139,7 @@ void read_pixels(Bytes& bytes, Rgbe first, std::vector<Rgbe>& line) {
             continue;
         }
         const size_t count = shift < 32 ? size_t{pixel[3]} << shift : line.size();
-        if (count > line.size() - i) refuse(bytes.where, "the image is damaged: a run leaves its line");
+        if (count > line.size() - i) refuse(bytes.where, "the image is damaged: a run exceeds its scanline");
         for (size_t k = 0; k < count; ++k, ++i) line[i] = line[i - 1];
         shift += 8;
     }

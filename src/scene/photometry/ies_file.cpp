@@ -147,7 +147,7 @@ void read_tilt(Reader& reader, IesFile& file) {
         return;
     }
     if (upper != "INCLUDE") {
-        file.notes.push_back("the tilt factors in \"" + printable(file.tilt, 60) + "\" are left out");
+        file.notes.push_back("the tilt factors in \"" + printable(file.tilt, 60) + "\" are ignored");
         return;
     }
     file.tilt = upper;
@@ -157,17 +157,18 @@ void read_tilt(Reader& reader, IesFile& file) {
     const std::vector<double> factors = reader.numbers(count, "a tilt factor");
     file.tilt_factors = {*std::ranges::min_element(factors), *std::ranges::max_element(factors)};
     file.notes.push_back("tilt factors of " + shortest_text(file.tilt_factors.low) + " to " +
-                         shortest_text(file.tilt_factors.high) + " are left out");
+                         shortest_text(file.tilt_factors.high) + " are ignored");
 }
 
 // Vertical or horizontal angles, which must ascend.
 std::vector<double> read_angles(Reader& reader, size_t count, const char* what, double low, double high) {
     std::vector<double> angles = reader.numbers(count, what);
     for (size_t i = 0; i < count; ++i) {
-        if (i && !(angles[i] > angles[i - 1])) reader.fail_at(std::string(what) + " does not go up");
+        if (i && !(angles[i] > angles[i - 1]))
+            reader.fail_at(std::string(what) + " is not above the previous one; angles must ascend");
         if (angles[i] < low - 0.01 || angles[i] > high + 0.01)
-            reader.fail_at(std::string(what) + " is " + shortest_text(angles[i]) + ", not within " +
-                           shortest_text(low) + " to " + shortest_text(high));
+            reader.fail_at(std::string(what) + " is " + shortest_text(angles[i]) + ", not between " +
+                           shortest_text(low) + " and " + shortest_text(high));
         angles[i] = std::clamp(angles[i], low, high);
     }
     return angles;
@@ -189,8 +190,9 @@ void check_planes(const Reader& reader, IesFile& file) {
     if (known) return;
     if (!near(first, 0) || last < 180)
         reader.fail("the horizontal angles go from " + shortest_text(first) + " to " + shortest_text(last) +
-                    "; known are 0, 0 to 90, 0 to 180, 90 to 270 and 0 to 360");
-    file.notes.push_back("the horizontal angles end at " + shortest_text(last) + ": the first plane closes the circle");
+                    "; supported: 0, 0 to 90, 0 to 180, 90 to 270 and 0 to 360");
+    file.notes.push_back("the horizontal angles end at " + shortest_text(last) +
+                         "; the first plane is repeated at 360");
     file.horizontal.push_back(360);
     for (size_t i = 0; i < file.vertical.size(); ++i) file.candela.push_back(file.candela[i]);
 }
@@ -203,10 +205,11 @@ void read_candela(Reader& reader, double factor, IesFile& file) {
         value = std::max(value * factor, 0.0);
         if (!(value <= max_candela)) reader.fail_at("a candela value is over 1e15");
     }
-    if (below) file.notes.push_back(count_text(below, "candela value") + " below 0 taken for 0");
+    if (below) file.notes.push_back(count_text(below, "candela value") + " below 0 clamped to 0");
     if (!reader.at_end() && reader.at_number())
-        reader.fail_at("numbers follow the last candela value: a count of angles is wrong, or decimals have commas");
-    if (!reader.at_end()) file.notes.push_back("what follows the candela values is left out");
+        reader.fail_at(
+            "numbers follow the last candela value: an angle count is wrong, or numbers have decimal commas");
+    if (!reader.at_end()) file.notes.push_back("text after the candela values is ignored");
 }
 
 void read_body(Reader& reader, IesFile& file) {
@@ -216,7 +219,7 @@ void read_body(Reader& reader, IesFile& file) {
     const size_t horizontal = reader.count("the number of horizontal angles", 1);
     const double type = reader.number("the photometric type"), units = reader.number("the type of units");
     if (type != 1 && type != 2 && type != 3)
-        reader.fail_at("the photometric type is " + shortest_text(type) + "; known are 1 (C), 2 (B) and 3 (A)");
+        reader.fail_at("the photometric type is " + shortest_text(type) + "; supported: 1 (C), 2 (B) and 3 (A)");
     file.type = static_cast<Photometry>(static_cast<int>(type));
     for (int axis = 0; axis < 3; ++axis)
         file.size[axis] = reader.number("the size of the luminaire") * (units == 1 ? metres_per_foot : 1);
@@ -225,7 +228,8 @@ void read_body(Reader& reader, IesFile& file) {
     const double third = reader.number("the ballast-lamp factor");
     file.standard == "LM-63-2019" ? file.generation = third : file.ballast *= third;
     file.watts = reader.number("the input watts");
-    if (!(file.multiplier >= 0) || !(file.ballast >= 0)) reader.fail_at("a factor on the candela is below 0");
+    if (!(file.multiplier >= 0) || !(file.ballast >= 0))
+        reader.fail_at("the candela multiplier or the ballast factor is below 0");
 
     const bool c = file.type == Photometry::type_c;
     file.vertical = read_angles(reader, vertical, "a vertical angle", c ? 0 : -90, c ? 180 : 90);

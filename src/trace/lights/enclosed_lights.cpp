@@ -94,8 +94,8 @@ std::optional<std::string> line_of(const Light& light, const Snapshot& snapshot)
     if (most->second < of_one_object || seen_by_camera(light, snapshot, *occluders, around.farthest)) return {};
     const std::string object = printable(name_of(*snapshot.scene, around.instance.at(most->first)), 80);
     return named("light", printable(light.name, 80)) + " is enclosed by the object \"" + object + "\": " +
-           formatted("%.0f %% of its light ends within %.2g m", 100 * around.blocked, double(around.farthest)) +
-           "; to let it out, write {\"name\": \"" + object + "\", \"casts_shadows\": false} in \"objects\"";
+           formatted("%.0f %% of its light is blocked within %.2g m", 100 * around.blocked, double(around.farthest)) +
+           "; to let it through, add {\"name\": \"" + object + "\", \"casts_shadows\": false} to \"objects\"";
 }
 }
 

@@ -157,7 +157,7 @@ std::shared_ptr<const Environment> environment_at(const Scene& scene, double sec
     environment->surface_scale = source.surface_scale.at(seconds);
     environment->shadows = source.shadows, environment->casters = links.x, environment->lit = links.y;
     if (!is_finite(environment->mean()))
-        refuse(scene.file.string(), named("light", source.name) + ": it is brighter than numbers can be");
+        refuse(scene.file.string(), named("light", source.name) + ": its radiance overflows");
     const bool shines =
         max_component(environment->mean()) > 0 && std::max(environment->volume_scale, environment->surface_scale) > 0;
     return shines ? environment : nullptr;

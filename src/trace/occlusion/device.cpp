@@ -32,7 +32,7 @@ void remember_error(void*, RTCError code, const char* message) {
 
 [[noreturn]] void fail_with(RTCError code, const std::string& message) {
     if (code == RTC_ERROR_OUT_OF_MEMORY)
-        fail(ExitCode::out_of_memory, "ray tracing", "no memory for the triangles of the scene");
+        fail(ExitCode::out_of_memory, "ray tracing", "not enough memory for the scene's triangles");
     fail(ExitCode::internal, "ray tracing", "Embree error " + std::to_string(code) + ": " + message);
 }
 }
@@ -40,9 +40,9 @@ void remember_error(void*, RTCError code, const char* message) {
 void set_embree_isa(std::string_view isa) {
     if (isa == "auto") isa = "avx2";
     if (isa != "avx2" && isa != "avx512")
-        fail(ExitCode::usage, "instruction set", std::string(isa) + " is none of auto, avx2, avx512");
+        fail(ExitCode::usage, "instruction set", std::string(isa) + " is not one of auto, avx2, avx512");
     if (isa == "avx512" && !__builtin_cpu_supports("avx512dq"))
-        fail(ExitCode::usage, "instruction set", "this machine has no AVX-512");
+        fail(ExitCode::usage, "instruction set", "this machine does not support AVX-512");
     DeviceState& s = state();
     const std::lock_guard lock(s.mutex);
     if (s.device && isa != s.isa)
@@ -56,7 +56,7 @@ RTCDevice embree_device() {
     const std::lock_guard lock(s.mutex);
     if (s.device) return s.device;
     s.device = rtcNewDevice(("isa=" + s.isa + ",threads=0,set_affinity=0,verbose=0").c_str());
-    if (!s.device) fail_with(rtcGetDeviceError(nullptr), "no device for " + s.isa);
+    if (!s.device) fail_with(rtcGetDeviceError(nullptr), "cannot create a device for " + s.isa);
     rtcSetDeviceErrorFunction(s.device, remember_error, nullptr);
     s.sixteen = rtcGetDeviceProperty(s.device, RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
     return s.device;

@@ -22,7 +22,7 @@ size_t index_of(const Scene& scene, Part part, std::string_view token, std::stri
     }
     if (found.size() == 1) return found[0];
     if (found.size() > 1)
-        fail(ExitCode::usage, path, "several have the name \"" + name + "\"; give its number, the first is 0");
+        fail(ExitCode::usage, path, "several have the name \"" + name + "\"; give its number instead, counted from 0");
     if (token.starts_with('#')) token.remove_prefix(1);
     if (const auto index = parsed<size_t>(token); index && *index < names.size()) return *index;
     fail(ExitCode::usage, path, unknown_name(word_of(part), name, names));
@@ -55,7 +55,7 @@ vec3 parsed_value(const Property& property, std::string_view text, std::string_v
     if (property.kind == ValueKind::toggle) {
         if (text == "on" || text == "true" || text == "1") return vec3(1, 0, 0);
         if (text == "off" || text == "false" || text == "0") return vec3(0);
-        fail(ExitCode::usage, path, "is on or off");
+        fail(ExitCode::usage, path, "expected on or off");
     }
     const std::vector<float> numbers = numbers_in(text, path);
     if (numbers.size() == 3 && property.kind != ValueKind::number) return {numbers[0], numbers[1], numbers[2]};

@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-[[noreturn]] void fail_at(size_t place) { refuse("byte " + std::to_string(place), "this is not JSON"); }
+[[noreturn]] void fail_at(size_t place) { refuse("byte " + std::to_string(place), "not valid JSON"); }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool is_space(char c) { return is_blank(c) || c == '\n' || c == '\r'; }
@@ -220,13 +220,13 @@ std::string with_json(std::string_view text, std::string_view pointer, std::stri
         return inserted(text, *container, elements, elements.size(),
                         key + colon_of(text, elements) + std::string(value));
     if (text[container->begin] != '[' || parsed<size_t>(token) != elements.size())
-        refuse(std::string(pointer), "there is no such place in the file");
+        refuse(std::string(pointer), "not found in the file");
     return inserted(text, *container, elements, elements.size(), value);
 }
 
 std::string with_json_item(std::string_view text, std::string_view array, size_t index, std::string_view value) {
     const std::optional<TextSpan> container = find_json(text, array);
-    if (!container || text[container->begin] != '[') refuse(std::string(array), "there is no such list in the file");
+    if (!container || text[container->begin] != '[') refuse(std::string(array), "no such list in the file");
     return inserted(text, *container, elements_of(text, *container), index, value);
 }
 

@@ -33,7 +33,12 @@ template<LightUnit unit> bool is_sun_in(const Scene& scene, size_t i) {
 }
 bool has_target(const Scene& scene, size_t i) { return scene.lights[i].target.has_value(); }
 bool has_place(const Scene& scene, size_t i) { return is_local(scene, i) || has_target(scene, i); }
-bool has_direction(const Scene& scene, size_t i) { return is_aimed(scene.lights[i]) && !has_target(scene, i); }
+bool has_direction(const Scene& scene, size_t i) {
+    return (is_aimed(scene.lights[i]) || scene.lights[i].profile) && !has_target(scene, i);
+}
+bool has_up(const Scene& scene, size_t i) {
+    return scene.lights[i].profile || scene.lights[i].gobo || is_rectangle(scene, i);
+}
 bool has_mean_cosine(const Scene& scene, size_t i) { return scene.media[i].phase.takes_medium_g(); }
 bool has_phase(const Scene& scene, size_t i, std::initializer_list<PhaseKind> kinds) {
     const PhaseSource& phase = scene.media[i].phase;
@@ -84,10 +89,12 @@ const Property table[] = {
      has_place},
     {Part::light, "direction", vector, "", -far, far, -1, 1, "The way the light travels, any length",
      of_light<&LightSource::direction>, has_direction},
+    {Part::light, "up", vector, "", -far, far, -1, 1, "Which way is up in its profile, gobo or face",
+     of_light<&LightSource::up>, has_up},
     {Part::light, "target", vector, "m", -far, far, -10, 10, "The point the light shines at",
      [](Scene& s, size_t i) -> Slot { return &*s.lights[i].target; }, has_target},
-    {Part::light, "color", color, "", 0, bright, 0, 1, "Colour, multiplies the intensity",
-     of_light<&LightSource::color>, always},
+    {Part::light, "color", color, "", 0, bright, 0, 1, "Color, multiplies the intensity", of_light<&LightSource::color>,
+     always},
     {Part::light, "intensity", number, "cd", 0, bright, 0, 2000, "Luminous intensity",
      of_light<&LightSource::intensity>, is_lamp_in_candela},
     {Part::light, "intensity", number, "nt", 0, bright, 0, 10000, "Radiance of the face",
@@ -217,8 +224,7 @@ const Property& find_property(const Scene& scene, Part part, size_t index, std::
         names.push_back(property->name);
     }
     fail(ExitCode::usage, place_of(scene, part, index),
-         names.empty() ? "nothing of it can be changed here: it belongs to the glTF"
-                       : unknown_name("property", name, names));
+         names.empty() ? "it belongs to the glTF and cannot be edited here" : unknown_name("property", name, names));
 }
 
 size_t count_of(const Scene& scene, Part part) {
@@ -269,10 +275,10 @@ LightPlace light_place(const Scene& scene, size_t light, double seconds) {
     if (source.node < 0) {
         const vec3 direction = source.direction.at(seconds);
         const float length = glm::length(direction);
-        return {source.position.at(seconds), length > 0 ? direction / length : vec3(0, -1, 0)};
+        return {source.position.at(seconds), length > 0 ? direction / length : vec3(0, -1, 0), source.up.at(seconds)};
     }
     const mat4 matrix = node_matrix(scene, source.node, seconds);
-    return {vec3(matrix[3]), -glm::normalize(vec3(matrix[2]))};
+    return {vec3(matrix[3]), -glm::normalize(vec3(matrix[2])), vec3(matrix[1])};
 }
 
 namespace {
@@ -286,9 +292,9 @@ float focus_at(const Scene& scene, size_t camera, double seconds) {
 
 vec3 value_at(const Scene& scene, const Property& property, size_t index, double seconds) {
     const std::string_view name = property.name;
-    if (property.part == Part::light && scene.lights[index].node >= 0 && (name == "position" || name == "direction")) {
+    if (property.part == Part::light && scene.lights[index].node >= 0 && property.is_placement()) {
         const LightPlace place = light_place(scene, index, seconds);
-        return name == "position" ? place.position + vec3(scene.origin) : place.direction;
+        return name == "position" ? place.position + vec3(scene.origin) : name == "up" ? place.up : place.direction;
     }
     const Slot slot = slot_of(scene, property, index);
     vec3 value(0);

@@ -36,6 +36,11 @@ struct Property {
         return member == "position" || member == "target" || member == "translate" || member == "base" ||
                member.starts_with("bounds/");
     }
+    // Whether a light of the glTF has it from its node.
+    bool is_placement() const {
+        const std::string_view member(name);
+        return part == Part::light && (member == "position" || member == "direction" || member == "up");
+    }
     bool is_angle() const { return std::string_view(unit) == "degrees" && kind == ValueKind::number; }
 };
 
@@ -51,9 +56,9 @@ size_t count_of(const Scene& scene, Part part);
 const std::string& name_of(const Scene& scene, Part part, size_t index); // empty for the scene
 std::string place_of(const Scene& scene, Part part, size_t index);       // "lights/lamp", for messages; "scene"
 
-// A light's position relative to the scene's origin and its unit direction, which is meaningless for point lights.
+// A light's position relative to the scene's origin, its unit direction and what is up for its profile, gobo or face.
 struct LightPlace {
-    vec3 position{0}, direction{0, -1, 0};
+    vec3 position{0}, direction{0, -1, 0}, up{0, 1, 0};
 };
 LightPlace light_place(const Scene& scene, size_t light, double seconds);
 

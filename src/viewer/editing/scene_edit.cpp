@@ -43,7 +43,7 @@ void check_value(const Scene& scene, const Property& property, const Edit& edit)
     for (int i = 0; i < (one ? 1 : 3); ++i)
         if (!(edit.value[i] >= property.least && edit.value[i] <= property.most))
             refuse(place_of(scene, edit),
-                   formatted("%.7g is not from %.7g to %.7g", edit.value[i], property.least, property.most));
+                   formatted("%.7g is not between %.7g and %.7g", edit.value[i], property.least, property.most));
     if (!(std::abs(edit.seconds) <= 1e6)) refuse(place_of(scene, edit), "the moment is not within a million seconds");
 }
 
@@ -81,7 +81,7 @@ void check(const MediumSource& medium, const std::string& place) {
 
 void check(const CameraSource& camera, const std::string& place) {
     if (camera.position.constant() && camera.target.constant() && camera.position.values[0] == camera.target.values[0])
-        refuse(place, "camera and target would be one point: there is no direction to look in");
+        refuse(place, "position and target would be the same point: the camera would have no viewing direction");
 }
 
 // Applies a change to one part, and undoes it if it is refused.
@@ -133,33 +133,35 @@ bool is_animated(const Scene& scene, int node) {
     return false;
 }
 
-// Detaches a light from its node with both its position and direction, as a scene file requires both.
+// Detaches a light from its node with all of its placement, as a scene file requires.
 std::vector<Edit> off_its_node(const Scene& scene, const Edit& edit) {
     const LightSource& light = scene.lights[edit.index];
     if (is_animated(scene, light.node))
         refuse(place_of(scene, edit),
                "is animated in the glTF (node \"" + scene.nodes[light.node].name + "\"); change it there");
-    if (!has_cone(light)) return {edit};
-    const LightPlace place = light_place(scene, edit.index, edit.seconds);
-    Edit position = edit, direction = edit;
-    position.property = "position", direction.property = "direction";
-    (edit.property == "position" ? direction : position).value =
-        (edit.property == "position" ? place.direction : place.position) + 0.0f;
-    return {position, direction};
+    std::vector<Edit> edits;
+    for (const Property* property : properties_of(scene, Part::light, edit.index)) {
+        if (!property->is_placement()) continue;
+        edits.push_back(edit);
+        if (property->name == edit.property) continue;
+        edits.back().property = property->name;
+        edits.back().value = value_at(scene, *property, edit.index, edit.seconds) + 0.0f;
+    }
+    return edits;
 }
 }
 
 std::vector<Edit> apply(Scene& scene, const Edit& edit) {
     if (edit.index >= count_of(scene, edit.part))
-        fail(ExitCode::usage, edit.property, "there is no such thing to change");
+        fail(ExitCode::usage, edit.property, "the scene has no such light, medium or camera");
     Edit clean = edit;
     clean.value += 0.0f; // turns -0 into 0: JSON readers do not keep its sign
     const Property& property = find_property(scene, clean.part, clean.index, clean.property);
     check_value(scene, property, clean);
     if (property.is_place() && scene.origin != dvec3(0))
-        refuse(place_of(scene, clean), "lies too far from the world's origin to be moved here; change the file");
-    const bool places = clean.part == Part::light && (clean.property == "position" || clean.property == "direction");
-    if (!places || scene.lights[clean.index].node < 0) {
+        refuse(place_of(scene, clean),
+               "the scene is too far from the world origin to edit positions here; edit the file");
+    if (!property.is_placement() || scene.lights[clean.index].node < 0) {
         apply_single(scene, clean);
         return {clean};
     }

@@ -86,7 +86,7 @@ void make_again(const Scene& old, const EditStep& step, SceneSession& session, s
         const std::string place = place_of(old, each.part, each.index) + "/" + each.property;
         const std::optional<size_t> index = index_of(session.scene, each.part, target_of(old, each));
         if (!index) {
-            lost.push_back(place + ": is not there any more");
+            lost.push_back(place + ": no longer exists");
             continue;
         }
         try {
@@ -192,7 +192,7 @@ void save(SceneSession& session) {
 
 void save_as(SceneSession& session, const std::filesystem::path& file) {
     if (is_model(file) || is_volume_name(file))
-        fail(ExitCode::usage, file.string(), "is no name for a scene file; scene files end in .json");
+        fail(ExitCode::usage, file.string(), "is not a name for a scene file; scene files end in .json");
     const std::filesystem::path old = session.scene.file;
     const auto folder = [](const std::filesystem::path& path) {
         return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
@@ -218,7 +218,7 @@ std::vector<std::string> reload(SceneSession& session) {
 std::vector<std::string> go_on_with(SceneSession& session, SceneSession fresh) {
     std::vector<std::string> lost;
     const size_t first = std::min(session.kept, session.done);
-    if (first < session.saved) lost.push_back("what was undone since saving is back, as the file has it");
+    if (first < session.saved) lost.push_back("steps undone since the last save are applied again, as in the file");
     for (size_t i = first; i < session.done; ++i) make_again(session.scene, session.steps[i], fresh, lost);
     session = std::move(fresh);
     return lost;

@@ -116,6 +116,23 @@ struct Writer {
     }
 };
 
+// JSON pointers to the members that name files, wherever they are in a scene, with their values.
+std::vector<std::pair<std::string, std::string>> files_in(const Json& json, const std::string& pointer) {
+    constexpr std::string_view members[] = {"$schema", "gltf", "image", "file", "recipe"};
+    std::vector<std::pair<std::string, std::string>> files;
+    const auto add = [&](const Json& child, const std::string& place) {
+        for (auto& file : files_in(child, place)) files.push_back(std::move(file));
+    };
+    for (const auto& [key, value] : json.members) {
+        const std::string place = json_pointer(pointer, key);
+        if (value.kind == Json::Kind::string && std::ranges::count(members, key))
+            files.emplace_back(place, value.string);
+        add(value, place);
+    }
+    for (size_t i = 0; i < json.items.size(); ++i) add(json.items[i], json_pointer(pointer, i));
+    return files;
+}
+
 bool is_relative_file(const std::string& path) {
     return !path.empty() && std::filesystem::path(path).is_relative() && path.find("://") == path.npos;
 }
@@ -164,22 +181,12 @@ std::string new_scene_text(Scene& scene) {
 std::string moved_text(std::string text, const std::filesystem::path& from, const std::filesystem::path& to) {
     std::error_code error; // folders that are missing or unreadable count as different
     if (std::filesystem::equivalent(from, to, error)) return text;
-    const auto move = [&](const std::string& pointer, bool must_be_there) {
-        const auto span = find_json(text, pointer);
-        if (!span || text[span->begin] != '"') return;
-        const std::string path = parse_json(span->of(text), pointer).string;
-        if (!is_relative_file(path) || (must_be_there && !std::filesystem::exists(from / path))) return;
+    for (const auto& [pointer, path] : files_in(parse_json(text, "scene"), "")) {
+        if (!is_relative_file(path) || (pointer == "/$schema" && !std::filesystem::exists(from / path))) continue;
         const std::filesystem::path moved =
             std::filesystem::relative(std::filesystem::absolute(from / path), std::filesystem::absolute(to));
         text = with_json(text, pointer, quote_json(moved.string()));
-    };
-    move("/$schema", true);
-    move("/gltf", false);
-    move("/background/image", false);
-    const auto media = find_json(text, "/media");
-    const size_t count = media ? parse_json(media->of(text), "/media").items.size() : 0;
-    for (size_t i = 0; i < count; ++i)
-        for (const char* member : {"/recipe", "/file"}) move(json_pointer("/media", i) + member, false);
+    }
     return text;
 }
 }

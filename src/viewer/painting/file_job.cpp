@@ -9,6 +9,7 @@
 #include "trace/moment.h"
 #include "viewer/editing/scene_session.h"
 #include "volume/recipe/bake.h"
+#include "volume/vdb/vdb.h"
 
 #include <algorithm>
 #include <new>
@@ -49,7 +50,7 @@ JobResult render(const RenderFiles& files, Progress& progress, std::atomic<bool>
     text += ": " + request.output;
     for (const std::string& note : report.notes) text += "; " + note;
     if (report.non_finite == 0) return {text};
-    return {text + "; " + count_text(report.non_finite, "sample") + " were not finite numbers and were left out",
+    return {text + "; " + count_text(report.non_finite, "sample") + " were not finite numbers and were ignored",
             ExitCode::non_finite};
 }
 
@@ -120,11 +121,12 @@ BakeFiles bake_files(const ViewState& state, const std::string& medium, const st
 
 std::string command_of(const ViewState& state, RenderRequest request) {
     const Scene& scene = loaded_scene(state);
-    if (!request.unsaved.empty() || (!state.session->has_file && scene.file.extension() == ".vdb"))
-        fail(ExitCode::usage, "copy-command", "no scene file has what is shown: save the scene first");
+    if (!request.unsaved.empty() || (!state.session->has_file && is_volume_name(scene.file)))
+        fail(ExitCode::usage, "copy-command", "what is shown is not in a scene file: save the scene first");
     if (state.free)
         fail(ExitCode::usage, "copy-command",
-             "no file has the camera moved by hand: copy it into the scene, or go back to one of the scene's (home)");
+             "the camera moved by hand is not in a scene file: copy it into the scene, or go back to one of the "
+             "scene's (home)");
     request.scene_file = std::filesystem::absolute(request.scene_file);
     request.output = std::filesystem::absolute(request.output).string();
     return command_line(request);

@@ -2,26 +2,13 @@
 
 #include "base/clock.h"
 #include "base/error.h"
+#include "base/process.h"
 #include "trace/frame_cache.h"
 
-#include <unistd.h>
-
-#include <fstream>
 #include <utility>
 
 namespace tyndall {
-namespace {
-uint64_t page_bytes() { return static_cast<uint64_t>(sysconf(_SC_PAGESIZE)); }
-
-// Resident memory of this process, which includes everything that snapshots refer to.
-uint64_t resident_bytes() {
-    uint64_t all = 0, resident = 0;
-    std::ifstream("/proc/self/statm") >> all >> resident;
-    return resident * page_bytes();
-}
-}
-
-uint64_t usual_store_bytes() { return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * page_bytes() / 4; }
+uint64_t usual_store_bytes() { return machine_memory() / 4; }
 
 FrameStore::FrameStore(uint64_t max_bytes) : max_bytes_(max_bytes) {}
 FrameStore::~FrameStore() = default;
@@ -38,9 +25,9 @@ void FrameStore::clear() { frames_.clear(), ahead_.reset(); }
 
 void FrameStore::put(const Snapshot& snapshot) {
     if (!snapshot.cache || snapshot.scene != scene_.get()) return;
-    if (frames_.empty()) bytes_before_ = resident_bytes();
+    if (frames_.empty()) bytes_before_ = held_memory(); // which includes everything that snapshots refer to
     const bool is_there = frames_.contains(snapshot.frame);
-    if (!is_there && resident_bytes() >= bytes_before_ + max_bytes_) return;
+    if (!is_there && held_memory() >= bytes_before_ + max_bytes_) return;
     Snapshot& stored = frames_[snapshot.frame];
     stored = snapshot;
     stored.cache_before = nullptr;

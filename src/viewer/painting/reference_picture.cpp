@@ -119,8 +119,8 @@ ReferenceFacts facts_of(const ReferencePicture& reference, const Request& reques
     facts.samples = std::max(reference.rounds.samples, 1);
     facts.finished = is_finished(reference, request);
     const int orders = reference.settings.fluence.orders;
-    facts.what = reference.exact.color.empty() ? "march of quality final" : "exact march";
-    facts.what += orders > 1 ? formatted(", light scattered up to %d times", orders) : ", light scattered once";
+    facts.what = reference.exact.color.empty() ? "march at quality final" : "exact march";
+    facts.what += orders > 1 ? formatted(", up to %d orders of scattering", orders) : ", single scattering";
     facts.change = reference.exact.color.empty() ? -1 : reference.change;
     const Rounds& rounds = reference.rounds;
     if (has_halves(rounds))
@@ -145,8 +145,8 @@ ErrorFigures error_figures(const Rounds& picture, const ReferencePicture& refere
 
 std::string error_text(const ErrorFigures& errors) {
     std::string text = "rmse_rel " + percent_text(errors.worst);
-    if (errors.noise >= 0) text += ", of it noise " + percent_text(std::min(errors.noise, errors.worst));
-    text += "  \u00b7  picture " + percent_text(errors.picture) + ", fog " + percent_text(errors.fog);
+    if (errors.noise >= 0) text += ", of which noise " + percent_text(std::min(errors.noise, errors.worst));
+    text += "  \u00b7  image " + percent_text(errors.picture) + ", fog " + percent_text(errors.fog);
     if (std::abs(errors.bias) >= worth_saying)
         text += "  \u00b7  " + percent_text(std::abs(errors.bias)) + (errors.bias > 0 ? " too bright" : " too dark");
     return text;
@@ -155,10 +155,10 @@ std::string error_text(const ErrorFigures& errors) {
 std::string reference_text(const ReferenceFacts& facts) {
     std::string text = "reference: " + facts.what;
     text += formatted("  \u00b7  %d %s  \u00b7  ", facts.samples, facts.samples == 1 ? "sample" : "samples");
-    if (facts.noise < 0) return text + "noise not known yet";
-    text += "noise of its fog " + percent_text(facts.noise);
-    return facts.finished ? text + formatted("  \u00b7  %s from quality final", percent_text(facts.change).c_str())
-                          : text + ", the exact one to come";
+    if (facts.noise < 0) return text + "noise not yet known";
+    text += "noise of the fog " + percent_text(facts.noise);
+    return facts.finished ? text + formatted("  \u00b7  %s away from quality final", percent_text(facts.change).c_str())
+                          : text + ", the exact image follows";
 }
 
 Image<glm::u8vec4> error_codes(const Layers& picture, const Layers& reference) {

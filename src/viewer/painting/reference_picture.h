@@ -57,7 +57,7 @@ ReferenceFacts facts_of(const ReferencePicture& reference, const Request& reques
 // The errors of an image relative to the reference. The noise is that of their difference, from the halves of both.
 ErrorFigures error_figures(const Rounds& picture, const ReferencePicture& reference);
 
-// "rmse_rel 3.1 % · picture 2.0 %, fog 3.1 % · 1.2 % too bright".
+// "rmse_rel 3.1 % · image 2.0 %, fog 3.1 % · 1.2 % too bright".
 std::string error_text(const ErrorFigures& errors);
 
 // Describes the reference, its progress and its remaining noise.

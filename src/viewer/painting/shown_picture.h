@@ -25,7 +25,7 @@ struct StageTimes {
 
 // About the reference that an image is compared with.
 struct ReferenceFacts {
-    std::string what; // "exact march, light scattered once"
+    std::string what; // "exact march, single scattering"
     int samples = 0;  // per pixel so far
     bool finished = false;
     double change = -1; // relative, by the step from quality final to the exact march; negative: not made yet

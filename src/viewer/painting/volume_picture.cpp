@@ -98,12 +98,13 @@ Image<float> density_of(const Medium& medium, VolumePicture& shown) {
 std::vector<std::pair<std::string, std::string>> brick_facts(const BrickPool& bricks) {
     const uint64_t all = static_cast<uint64_t>(bricks.size.x) * bricks.size.y * bricks.size.z;
     const uint64_t stored = bricks.values.size() / brick_stride;
-    return {{"voxels of", vector_text(bricks.voxel_size) + " m"},
-            {"world", vector_text(bricks.bounds.low) + " to " + vector_text(bricks.bounds.high) + " m"},
-            {"bricks of 8\u00b3", formatted("%llu of %llu hold fog, %zu even", static_cast<unsigned long long>(stored),
-                                            static_cast<unsigned long long>(all), bricks.constants.size())},
-            {"densest", formatted("%.4g, mean %.3g", double(bricks.highest), double(bricks.mean))},
-            {"in memory", bytes_text(static_cast<double>(bricks.bytes()))}};
+    return {
+        {"voxel size", vector_text(bricks.voxel_size) + " m"},
+        {"world", vector_text(bricks.bounds.low) + " to " + vector_text(bricks.bounds.high) + " m"},
+        {"bricks of 8\u00b3", formatted("%llu of %llu hold fog, %zu constant", static_cast<unsigned long long>(stored),
+                                        static_cast<unsigned long long>(all), bricks.constants.size())},
+        {"highest density", formatted("%.4g, mean %.3g", double(bricks.highest), double(bricks.mean))},
+        {"in memory", bytes_text(static_cast<double>(bricks.bytes()))}};
 }
 
 // Facts about the file, as in tyndall info.
@@ -133,14 +134,16 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Scene& scene, co
             facts = known.facts;
         }
     if (medium.density.kind == DensityKind::bricks) {
-        facts.emplace_back("as rendered", source->kind == MediumKind::noise ? "grown from a recipe" : "read as fog");
+        facts.emplace_back("as rendered", source != scene.media.end() && source->kind == MediumKind::noise
+                                              ? "grown from a recipe"
+                                              : "read as fog");
         for (auto& row : brick_facts(*medium.density.bricks)) facts.push_back(std::move(row));
     } else {
         facts.emplace_back("kind",
                            medium.density.kind == DensityKind::height
                                ? formatted("falls with height: to 37 %% in %.3g m above %.3g m",
                                            double(medium.density.height_falloff), double(medium.density.height_base))
-                               : "even");
+                               : "homogeneous");
     }
     facts.emplace_back("extinction", formatted("%.4g 1/m at density 1", double(grey_extinction(medium.optics))));
     return facts;

@@ -8,75 +8,77 @@ namespace tyndall {
 // optional ones; a|b is one of these words.
 const std::vector<VerbInfo>& verbs() {
     static const std::vector<VerbInfo> all{
-        {Verb::open, "open", "FILE", "show another scene"},
+        {Verb::open, "open", "FILE", "open another scene"},
         {Verb::reload, "reload", "",
-         "read all files again; unsaved edits stay (files that change are read by themselves)"},
+         "reload all files; unsaved edits are kept (changed files are reloaded automatically)"},
         {Verb::set, "set", "NAME VALUE", "change a setting, as --set does"},
-        {Verb::reset, "reset", "NAME", "a setting back to its usual value; all: every one"},
+        {Verb::reset, "reset", "NAME", "reset a setting to its default; all: every setting"},
         {Verb::mode, "mode", "NAME", "render with another technique"},
         {Verb::beside, "beside", "[NAME]",
-         "another technique, or the reference, in the right part of the image; without a name: none"},
-        {Verb::wipe, "wipe", "x", "where that part begins, as a share of the width"},
-        {Verb::arrange, "arrange", "wipe|side", "two techniques in one image, or in two images side by side"},
+         "show another technique, or the reference, in the right part of the image; no name: none"},
+        {Verb::wipe, "wipe", "x", "where that part begins, as a fraction of the width"},
+        {Verb::arrange, "arrange", "wipe|side", "show the two in one image with a wipe, or side by side"},
         {Verb::explain, "explain", "[x] [y]",
-         "what happens on the ray of a pixel, 0 0 the upper left, and what every technique makes of it; without: "
+         "show what happens along the ray of a pixel (0 0: upper left) and the result of every technique; no pixel: "
          "close"},
-        {Verb::volume, "volume", "on|off", "show a medium's density and what is known of its grid"},
-        {Verb::medium, "medium", "NAME", "which medium that is"},
-        {Verb::slice, "slice", "x|y|z n", "its density across an axis, at a share of its extent"},
-        {Verb::project, "project", "x|y|z maximum|mean", "its largest or mean density along an axis"},
-        {Verb::quality, "quality", "NAME", "all settings as draft, preview, final or reference have them"},
-        {Verb::orders, "orders", "NAME", "how many times light scatters: a number, or all"},
+        {Verb::volume, "volume", "on|off", "show a medium's density and facts about its grid"},
+        {Verb::medium, "medium", "NAME", "the medium to show"},
+        {Verb::slice, "slice", "x|y|z n", "show its density across an axis, at a fraction of its extent"},
+        {Verb::project, "project", "x|y|z maximum|mean", "show its maximum or mean density along an axis"},
+        {Verb::quality, "quality", "NAME", "set all settings to draft, preview, final or reference"},
+        {Verb::orders, "orders", "NAME", "orders of scattering: a number, or all"},
         {Verb::show, "show", "NAME",
-         "picture, fog, transmittance, depth, validity, stops (false colours) or error: against the "
-         "reference"},
+         "picture, fog, transmittance, depth, validity, stops (false colors) or error (against the "
+         "reference)"},
         {Verb::exposure, "exposure", "EV",
-         "how much brighter the image is shown than light is, in stops; auto: measured; scene: as the scene states"},
-        {Verb::brighten, "brighten", "ev", "that many stops more"},
-        {Verb::view_transform, "view-transform", "filmic|srgb", "how what is brighter than a screen is shown"},
+         "exposure of the displayed image, in stops; auto: measured; scene: the scene's"},
+        {Verb::brighten, "brighten", "ev", "raise the exposure by that many stops"},
+        {Verb::view_transform, "view-transform", "filmic|srgb", "how values brighter than the display are shown"},
         {Verb::zoom, "zoom", "NAME [x] [y]",
-         "fit: the whole image; 1, 2 ...: so many pixels of the window for one of it, that of x y in the middle"},
-        {Verb::camera, "camera", "[NAME]", "a camera of the scene, back where it stands; without a name: the scene's"},
-        {Verb::orbit, "orbit", "x y", "turn the scene around the point looked at, degrees"},
-        {Verb::turn, "turn", "x y", "turn the camera where it stands, degrees"},
-        {Verb::pan, "pan", "x y", "shift the scene, image heights"},
-        {Verb::dolly, "dolly", "factor", "the distance to the point looked at, times a factor"},
-        {Verb::fly, "fly", "x y z", "metres to the right, up, forward"},
+         "fit: the whole image; 1, 2 ...: window pixels per image pixel, centered on pixel x y"},
+        {Verb::camera, "camera", "[NAME]",
+         "switch to a camera of the scene, as placed in the scene; no name: the default camera"},
+        {Verb::orbit, "orbit", "x y", "orbit around the point looked at, degrees"},
+        {Verb::turn, "turn", "x y", "turn the camera in place, degrees"},
+        {Verb::pan, "pan", "x y", "pan the view, in image heights"},
+        {Verb::dolly, "dolly", "factor", "multiply the distance to the point looked at by a factor"},
+        {Verb::fly, "fly", "x y z", "move the camera right, up and forward, metres"},
         {Verb::size, "size", "x y", "image size in pixels; 0 0: the scene's"},
         {Verb::frame, "frame", "n", "go to a frame"},
-        {Verb::step, "step", "n", "so many frames on"},
-        {Verb::play, "play", "[n]", "play on, or n frames"},
+        {Verb::step, "step", "n", "go n frames forward"},
+        {Verb::play, "play", "[n]", "play, or play n frames"},
         {Verb::stop, "stop", "", "stop playing"},
-        {Verb::loop, "loop", "on|off", "whether playing begins anew at the end"},
+        {Verb::loop, "loop", "on|off", "restart at the end when playing"},
         {Verb::edit, "edit", "PATH VALUE [n]",
-         "change the scene at this moment, as lights/lamp/intensity 400; with the same n: one step to undo"},
-        {Verb::undo, "undo", "", "take back the last edit of the scene"},
-        {Verb::redo, "redo", "", "make it again"},
-        {Verb::cancel, "cancel", "n", "take back the edits of number n for good"},
+         "change a value at this frame, such as lights/lamp/intensity 400; edits with the same n undo as one step"},
+        {Verb::undo, "undo", "", "undo the last edit of the scene"},
+        {Verb::redo, "redo", "", "redo the edit that was undone"},
+        {Verb::cancel, "cancel", "n", "undo the edits with number n, without redo"},
         {Verb::save, "save", "", "write the edits into the scene file"},
-        {Verb::save_as, "save-as", "FILE", "write a scene file elsewhere and go on with that one"},
-        {Verb::select, "select", "PATH",
-         "show what can be edited of lights/NAME, media/NAME, cameras/NAME or the scene"},
-        {Verb::tab, "tab", "NAME", "what the side shows: render or lights"},
-        {Verb::handles, "handles", "on|off", "draw the lights into the image, to be taken hold of"},
+        {Verb::save_as, "save-as", "FILE", "write a new scene file and continue with it"},
+        {Verb::select, "select", "PATH", "show the editable values of lights/NAME, media/NAME, cameras/NAME or scene"},
+        {Verb::tab, "tab", "NAME", "page of the side panel: render or lights"},
+        {Verb::handles, "handles", "on|off", "draw handles in the image for moving lights"},
         {Verb::missing, "missing", "error|hold|skip",
-         "frames that a sequence of volumes lacks: said, the one before shown, or without fog"},
+         "missing frames of a volume sequence: show an error, hold the frame before, or skip the fog"},
         {Verb::panels, "panels", "on|off", "show the panels"},
-        {Verb::help, "help", "on|off", "show what keys and mouse do"},
+        {Verb::help, "help", "on|off", "show keys and mouse controls"},
         {Verb::key, "key", "NAME", "press a key"},
         {Verb::drag, "drag", "X,Y X,Y", "move the mouse from one point of the window to another, left button down"},
-        {Verb::wait, "wait", "NAME [n]", "until idle, for a job to end, for so many seconds, or for \"samples N\""},
+        {Verb::wait, "wait", "NAME [n]",
+         "wait until idle, until a job ends, for this many seconds, or for \"samples N\""},
         {Verb::snapshot, "snapshot", "FILE", "write the image as tyndall render does: .exr or .png"},
         {Verb::screenshot, "screenshot", "FILE", "write the window as it is: .png"},
         {Verb::render, "render", "FILE [RANGE] [exr|png]",
-         "frames to files as tyndall render does, out.####.exr, while the viewer goes on; png: pictures as well"},
-        {Verb::bake, "bake", "NAME FILE [RANGE]", "a medium grown from a recipe to out.####.vdb, as tyndall bake does"},
-        {Verb::stop_job, "stop-job", "", "end that: finished frames stay, and are kept when it is asked for again"},
+         "render frames to out.####.exr in the background, as tyndall render does; png: PNGs as well"},
+        {Verb::bake, "bake", "NAME FILE [RANGE]", "bake the recipe of a medium to out.####.vdb, as tyndall bake does"},
+        {Verb::stop_job, "stop-job", "", "stop the job; finished frames are kept when it is started again"},
         {Verb::copy_command, "copy-command", "FILE [RANGE] [exr|png]",
-         "to the clipboard: the command line that renders the same frames"},
-        {Verb::close, "close", "", "close the window as its button does: asks when edits are unsaved or a job runs"},
-        {Verb::answer, "answer", "NAME", "what is to become of them: save, discard or cancel"},
-        {Verb::quit, "quit", "", "end without asking"},
+         "copy the command line that renders the same frames to the clipboard"},
+        {Verb::close, "close", "",
+         "close the window as its button does; asks if edits are unsaved or a job is running"},
+        {Verb::answer, "answer", "NAME", "answer that question: save, discard or cancel"},
+        {Verb::quit, "quit", "", "quit without asking"},
     };
     return all;
 }
@@ -112,7 +114,7 @@ constexpr double largest_number = 1e9;
 double number(std::string_view text, const std::string& place, std::string_view usage) {
     const auto value = parsed<double>(text);
     if (!value || !(std::abs(*value) <= largest_number))
-        refuse(place, "'" + printable(text, 40) + "' is no number; expected " + std::string(usage));
+        refuse(place, "'" + printable(text, 40) + "' is not a number; expected " + std::string(usage));
     return *value;
 }
 
@@ -121,7 +123,7 @@ bool is_name(std::string_view parameter) { return parameter[0] >= 'A' && paramet
 void add_point(Action& action, std::string_view word, std::string_view usage) {
     const size_t comma = word.find(',');
     if (comma == word.npos)
-        refuse(action.place, "'" + printable(word, 40) + "' is no point; expected " + std::string(usage));
+        refuse(action.place, "'" + printable(word, 40) + "' is not a point; expected " + std::string(usage));
     action.numbers.push_back(number(word.substr(0, comma), action.place, usage));
     action.numbers.push_back(number(word.substr(comma + 1), action.place, usage));
 }
@@ -153,8 +155,8 @@ void check_wait(const Action& action) {
 Action parse_action(std::string_view text, const std::string& place) {
     const Line line = split(text);
     const auto& words = line.words;
-    if (words.empty()) refuse(place, "there is no action here");
-    if (line.open_quote) refuse(place, "a quote is left open");
+    if (words.empty()) refuse(place, "no action given");
+    if (line.open_quote) refuse(place, "a closing quote is missing");
     std::vector<std::string> names;
     const VerbInfo* found = nullptr;
     for (const VerbInfo& info : verbs()) {
@@ -174,7 +176,8 @@ Action parse_action(std::string_view text, const std::string& place) {
         if (next == words.size()) refuse(place, "expected " + usage);
         add_parameter(action, parameter, words[next++], usage);
     }
-    if (next != words.size()) refuse(place, "'" + printable(words[next], 40) + "' is one too many; expected " + usage);
+    if (next != words.size())
+        refuse(place, "unexpected parameter '" + printable(words[next], 40) + "'; expected " + usage);
     if (action.verb == Verb::wait) check_wait(action);
     if (action.verb == Verb::explain && action.numbers.size() == 1) refuse(place, "expected explain x y, or explain");
     if (action.verb == Verb::zoom && action.numbers.size() == 1) refuse(place, "expected zoom NAME x y, or zoom NAME");

@@ -14,7 +14,7 @@ namespace tyndall {
 namespace {
 SceneSession& open_one(ViewState& state) {
     loaded_scene(state);
-    if (state.loading && !state.reloading) fail(ExitCode::usage, "viewer", "another scene is being read");
+    if (state.loading && !state.reloading) fail(ExitCode::usage, "viewer", "another scene is loading");
     return *state.session;
 }
 
@@ -116,7 +116,7 @@ void close_window(ViewState& state, const Action& action) {
 }
 
 void answer(ViewState& state, const std::string& word) {
-    if (!state.asked) fail(ExitCode::usage, "answer", "nothing was asked");
+    if (!state.asked) fail(ExitCode::usage, "answer", "there is no open question");
     choice_among("answer", word, {"save", "discard", "cancel"});
     if (word == "save" && is_unsaved(state)) save_scene(state, {});
     const Action action = *std::exchange(state.asked, std::nullopt);

@@ -56,13 +56,13 @@ std::optional<Action> action_of_key(const ViewState& state, std::string_view key
 
 const std::vector<KeyInfo>& key_list() {
     static const std::vector<KeyInfo> list{
-        {"drag", "turn around the point looked at"},
-        {"shift + drag, middle", "shift"},
+        {"drag", "orbit around the point looked at"},
+        {"shift + drag, middle", "pan"},
         {"right button", "look around; with W A S D Q E: fly"},
-        {"wheel", "nearer, further"},
-        {"ctrl + wheel, drag", "zoom into the image, shift it"},
+        {"wheel", "closer, farther"},
+        {"ctrl + wheel, drag", "zoom the image, pan it"},
         {"Z", "pixel for pixel, or the whole image"},
-        {"shift + click", "explain a pixel: what happens on its ray"},
+        {"shift + click", "explain a pixel: what happens along its ray"},
         {"home", "back to the scene's camera"},
         {"1 ... 8", "technique"},
         {"V", "picture, fog, transmittance, depth, validity, stops, error"},
@@ -71,13 +71,13 @@ const std::vector<KeyInfo>& key_list() {
         {"left, right", "one frame"},
         {"L", "loop"},
         {"T", "lights and fog, or rendering"},
-        {"G", "lights in the image, to be moved"},
+        {"G", "handles of the lights in the image"},
         {"ctrl + Z", "undo an edit of the scene"},
-        {"ctrl + shift + Z", "redo it; ctrl + Y as well"},
+        {"ctrl + shift + Z", "redo it; also ctrl + Y"},
         {"ctrl + S", "save the scene"},
         {"P", "write the image (EXR)"},
         {"tab", "panels"},
-        {"F5", "read the files again"},
+        {"F5", "reload the files"},
         {"F1", "this list"},
     };
     return list;

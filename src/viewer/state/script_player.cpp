@@ -19,9 +19,9 @@ void check_end(const Action& wait, const ViewState& state) {
     const std::string& what = wait.words[0];
     if (what == "samples" && wait.numbers[0] > state.max_samples)
         fail(ExitCode::usage, "wait samples",
-             formatted("an image is finished after %d: --samples says how many", state.max_samples));
+             formatted("an image is finished after %d samples; use --samples for more", state.max_samples));
     if ((what == "idle" || what == "samples") && state.playing)
-        fail(ExitCode::usage, "wait " + what, "playing does not end: play N frames, or stop");
+        fail(ExitCode::usage, "wait " + what, "playback does not end: use play N, or stop");
 }
 }
 

@@ -54,7 +54,7 @@ void take_scene(ViewState& state, LoadedScene loaded) {
     const std::string selected = selected_name(state);
     if (again) {
         std::vector<std::string> lost = go_on_with(*state.session, std::move(*loaded.session));
-        if (!lost.empty()) state.message = "read again; lost: " + joined(lost, "; "), state.message_is_error = true;
+        if (!lost.empty()) state.message = "reloaded; lost: " + joined(lost, "; "), state.message_is_error = true;
     } else {
         state.session = std::move(loaded.session);
     }

@@ -42,7 +42,7 @@ void place(BrickPool& pool, const dmat4& index_to_world) {
     pool.index_to_world = mat4(local_to_world);
     pool.world_to_index = mat4(world_to_local);
     if (!is_finite(pool.index_to_world) || !is_finite(pool.world_to_index))
-        refuse("fog transform", "squeezes space flat or is out of range; every axis needs a length");
+        refuse("fog transform", "is singular or out of range; no axis may have zero scale");
     for (int axis = 0; axis < 3; ++axis)
         pool.voxel_size[axis] = static_cast<float>(glm::length(dvec3(index_to_world[axis])));
     if (pool.empty()) return;

@@ -1,11 +1,11 @@
 // Builds bricks from leaves and tiles: finds each brick's sources, packs the nonuniform bricks and drops the rest.
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/process.h"
 #include "volume/bricks/brick_sources.h"
 #include "volume/bricks/half.h"
 
 #include <sys/mman.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -41,8 +41,8 @@ void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
                  "fog spans " + std::to_string(int64_t{box.high.x} - box.low.x + 1) + "x" +
                      std::to_string(int64_t{box.high.y} - box.low.y + 1) + "x" +
                      std::to_string(int64_t{box.high.z} - box.low.z + 1) +
-                     " voxels, more than can be held: a few stray ones far away are enough; remove them, or use "
-                     "larger voxels");
+                     " voxels, too many to store: a few stray voxels far away are enough; remove them, or use larger "
+                     "voxels");
     }
     pool.local_bounds = {vec3(box.low - pool.low - 1), vec3(box.high - pool.low + 1)};
 }
@@ -112,7 +112,7 @@ HalfRange pack(const Corners& corners, const Sources& sources, uint16_t* values)
 std::vector<HalfRange> packed_bricks(const std::string& name, const std::vector<ivec3>& list, const Sources& sources,
                                      const BrickPool& pool, BrickArrays& arrays) {
     const double bytes = static_cast<double>(list.size()) * brick_stride * sizeof(uint16_t);
-    const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    const double memory = static_cast<double>(machine_memory());
     if (bytes > memory)
         fail(ExitCode::out_of_memory, name,
              "its bricks take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) + " MB, this machine has " +

@@ -2,13 +2,13 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/process.h"
 #include "volume/bricks/bricks.h"
 #include "volume/bricks/half.h"
 #include "volume/emission/blackbody.h"
 
 #include <algorithm>
 #include <tuple>
-#include <unistd.h>
 
 namespace tyndall {
 namespace {
@@ -48,10 +48,10 @@ std::vector<ivec3> corners_of(const EmissionField& field) {
 // A leaf takes 2 KB even where its brick took almost nothing.
 void check_room(size_t leaves, const std::string& name) {
     const double bytes = static_cast<double>(leaves) * sizeof(Leaf);
-    const double memory = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    const double memory = static_cast<double>(machine_memory());
     if (bytes > memory / 2)
         fail(ExitCode::out_of_memory, name,
-             "the light of its voxels takes " + std::to_string(static_cast<int64_t>(bytes / 1e6)) +
+             "the emission of its voxels takes " + std::to_string(static_cast<int64_t>(bytes / 1e6)) +
                  " MB. Use larger voxels or a smaller active box");
 }
 

@@ -24,7 +24,7 @@ CellGrid cells_around(dvec3 low, dvec3 high, const std::string& what) {
     const dvec3 first = glm::floor(low / 8.0), count = glm::floor(high / 8.0) - first + 1.0;
     if (!(count.x * count.y * count.z <= max_cells))
         refuse(what,
-               "while the shutter is open it spreads over too many voxels; its velocity or scale may be in another "
+               "it spreads over too many voxels while the shutter is open; its velocity or scale may be in the wrong "
                "unit");
     return {ivec3(first), ivec3(count)};
 }
@@ -34,8 +34,8 @@ Leaves filled_leaves(const std::vector<ivec3>& cells, const std::string& what,
     const double bytes = static_cast<double>(cells.size()) * sizeof(Leaf);
     if (bytes > static_cast<double>(machine_memory()) / 2)
         fail(ExitCode::out_of_memory, what,
-             "its voxels while the shutter is open take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) +
-                 " MB. Use larger voxels");
+             "its voxels take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) +
+                 " MB while the shutter is open. Use larger voxels");
     Leaves leaves(cells.size());
     parallel_ranges(static_cast<int64_t>(cells.size()), 4, [&](int64_t begin, int64_t end) {
         for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i) {

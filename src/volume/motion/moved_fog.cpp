@@ -58,8 +58,8 @@ struct MovedCells {
 };
 
 [[noreturn]] void refuse_scattered(const std::string& what) {
-    refuse(what, "its velocities scatter it over too many voxels while the shutter is open: see velocity_unit, "
-                 "velocity_scale, and clamp of the grid");
+    refuse(what, "its velocities spread it over too many voxels while the shutter is open: check velocity_unit, "
+                 "velocity_scale and the grid's clamp");
 }
 
 // Limits the total number of (brick, reachable cell) pairs.
@@ -132,7 +132,7 @@ SparseVolume moved_fog(const PlacedBricks& fog, const VelocityField& field, doub
     const double voxels = std::abs(time) * double{field.fastest} / double{std::min({sizes.x, sizes.y, sizes.z})};
     if (!(voxels <= max_voxels))
         refuse(what,
-               formatted("its velocity moves it by up to %.3g voxels while the shutter is open: see velocity_unit "
+               formatted("its velocity moves it by up to %.3g voxels while the shutter is open: check velocity_unit "
                          "and velocity_scale",
                          voxels));
 

@@ -83,7 +83,7 @@ std::vector<VdbGridContent> grids_of(const FogRecipe& recipe, const BakeOptions&
     if (options.velocity) grids.push_back({velocity_name, true});
     for (size_t g = 1; g < grids.size(); ++g)
         if (grids[g].name == recipe.name)
-            refuse("name", "\"" + recipe.name + "\" is what another grid of this bake is called");
+            refuse("name", "\"" + recipe.name + "\" is reserved for another grid of this bake");
     return grids;
 }
 
@@ -169,7 +169,7 @@ private:
 BakeReport bake(const FogRecipe& recipe, const std::string& pattern, const std::vector<int>& frames,
                 const BakeOptions& options, Progress& progress) {
     if (frames.size() > 1 && !has_frame_token(pattern))
-        fail(ExitCode::usage, pattern, "needs a place for the frame number, such as fog.####.vdb");
+        fail(ExitCode::usage, pattern, "several frames need a frame number in the name, such as fog.####.vdb");
     const double start = steady_seconds();
     BakeReport report;
     if (frames.empty()) return report;

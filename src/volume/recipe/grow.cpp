@@ -23,10 +23,11 @@ VoxelGrid voxel_grid(const FogRecipe& recipe) {
     const dvec3 count = glm::ceil(size / recipe.voxel_size - 0.5);
     if (!(std::min({count.x, count.y, count.z}) >= 1))
         refuse("voxel_size",
-               std::to_string(recipe.voxel_size) + " m is too large for the bounds: no voxel centre fits");
+               std::to_string(recipe.voxel_size) + " m is too large for the bounds: no voxel center fits");
     if (!(count.x * count.y * count.z <= 0x1p33))
         fail(ExitCode::out_of_memory, "voxel_size",
-             std::to_string(recipe.voxel_size) + " m makes over 8.6e9 voxels of the bounds; use larger voxels");
+             std::to_string(recipe.voxel_size) +
+                 " m divides the bounds into more than 8.6e9 voxels; use larger voxels");
 
     VoxelGrid grid;
     grid.size = ivec3(count);

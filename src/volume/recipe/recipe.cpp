@@ -100,15 +100,14 @@ void read_optics(const Json& optics, FogRecipe& recipe) {
 void check_bounds(const FogRecipe& recipe, const std::string& file) {
     for (int axis = 0; axis < 3; ++axis)
         if (!(recipe.bounds.low[axis] < recipe.bounds.high[axis]))
-            refuse(file + ": /bounds/high/" + std::to_string(axis), "has to be above that of \"low\"");
+            refuse(file + ": /bounds/high/" + std::to_string(axis), "must be greater than in \"low\"");
     const vec3 size = recipe.bounds.size();
     if (!(recipe.voxel_size <= std::min({size.x, size.y, size.z})))
-        refuse(file + ": /voxel_size", "larger than the bounds");
+        refuse(file + ": /voxel_size", "must not exceed the size of the bounds");
     if (!recipe.fire) return;
-    if (recipe.fire->edge > recipe.fire->core) refuse(file + ": /fire/edge", "has to be no hotter than \"core\"");
-    if (recipe.fire->air > recipe.fire->edge) refuse(file + ": /fire/air", "has to be no hotter than \"edge\"");
-    if (recipe.name == temperature_name)
-        refuse(file + ": /name", "is what the grid of the fire's temperature is called");
+    if (recipe.fire->edge > recipe.fire->core) refuse(file + ": /fire/edge", "must not exceed \"core\"");
+    if (recipe.fire->air > recipe.fire->edge) refuse(file + ": /fire/air", "must not exceed \"edge\"");
+    if (recipe.name == temperature_name) refuse(file + ": /name", "is reserved for the grid of the fire's temperature");
 }
 }
 

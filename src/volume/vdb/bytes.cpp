@@ -42,8 +42,8 @@ void ByteCursor::complain(const std::string& what) const {
 
 void ByteCursor::require(uint64_t count, std::string_view what) const {
     if (count <= left()) return;
-    refuse(where, "is cut: " + std::string(what) + " at byte " + std::to_string(position_) + " takes " +
-                      std::to_string(count) + " bytes, the file holds " + std::to_string(left()) + " more");
+    refuse(where, "is truncated: " + std::string(what) + " at byte " + std::to_string(position_) + " takes " +
+                      std::to_string(count) + " bytes, the file has " + std::to_string(left()) + " more");
 }
 
 void ByteCursor::read_at(uint64_t position, char* bytes, uint64_t count, std::string_view what) const {
@@ -51,7 +51,7 @@ void ByteCursor::read_at(uint64_t position, char* bytes, uint64_t count, std::st
         const ssize_t got = pread(descriptor_, bytes, count, static_cast<off_t>(position));
         if (got < 0 && errno == EINTR) continue;
         if (got < 0) fail(ExitCode::unreadable, where, std::strerror(errno));
-        if (got == 0) refuse(where, "was cut while it was read: " + std::string(what));
+        if (got == 0) refuse(where, "was truncated while it was being read: " + std::string(what));
         bytes += got, position += static_cast<uint64_t>(got), count -= static_cast<uint64_t>(got);
     }
 }
@@ -85,13 +85,14 @@ void ByteCursor::skip(uint64_t count, std::string_view what) {
 }
 
 void ByteCursor::seek(uint64_t position, std::string_view what) {
-    if (position > end_) complain("is cut: " + std::string(what) + " at byte " + std::to_string(position));
+    if (position > end_)
+        complain("is truncated: it ends before " + std::string(what) + " at byte " + std::to_string(position));
     position_ = position;
 }
 
 std::string ByteCursor::text(uint64_t most, std::string_view what) {
     const auto length = value<uint32_t>(what);
-    if (length > most) complain(std::string(what) + " has a length of " + std::to_string(length) + " bytes");
+    if (length > most) complain(std::string(what) + " has an invalid length of " + std::to_string(length) + " bytes");
     return bytes(length, what);
 }
 

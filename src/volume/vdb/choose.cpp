@@ -34,11 +34,11 @@ std::string label(const ByteCursor& file, const VdbGridEntry& grid) {
 
 std::string obstacle(const VdbGridEntry& grid, float width) {
     if (!is_scalar_float(grid) && (grid.type == "float" || grid.type == "double"))
-        return "has the tree shape " + printable(grid.tree_shape, 40) + ", only 5_4_3 can be read";
+        return "has the tree shape " + printable(grid.tree_shape, 40) + "; only 5_4_3 is supported";
     if (!is_scalar_float(grid)) return "holds " + printable(grid.type, 40) + " values, not a density per voxel";
     if (grid.grid_class == "level set" && width == 0)
-        return "is a level set; as fog it needs a \"width\" in \"grids\": {\"density\": {...}}, no wider than its "
-               "narrow band, or conversion (vdb_tool -read in.vdb -ls2fog -write fog.vdb)";
+        return "is a level set; for fog, set a \"width\" in \"grids\": {\"density\": {...}}, no wider than its "
+               "narrow band, or convert it (vdb_tool -read in.vdb -ls2fog -write fog.vdb)";
     if (grid.grid_class == "fog volume" && width > 0) return "is a fog volume; a \"width\" is for level sets";
     return grid.transform_problem;
 }
@@ -79,16 +79,16 @@ std::string listing(const VdbDirectory& directory) {
     const bool one = directory.grids.size() == 1;
     const bool any = std::ranges::any_of(directory.grids, [](const auto& grid) { return obstacle(grid).empty(); });
     const VdbGridEntry& first = named.empty() ? directory.grids.front() : *named.front();
-    if (any && one) refuse(label(file, first), "is not called a density; if it is the fog, name it as \"grid\"");
-    const std::string others = "; \"grid\" takes one of " + listing(directory);
+    if (any && one) refuse(label(file, first), "is not named as a density; to use it as fog, set \"grid\" to its name");
+    const std::string others = "; set \"grid\" to one of " + listing(directory);
     if (one || !named.empty()) refuse(label(file, first), obstacle(first) + (any ? others : ""));
-    refuse(file.where, any ? "it is not clear which grid is the fog" + others
-                           : "none of its grids can be fog: " + listing(directory));
+    refuse(file.where, any ? "cannot tell which grid is the density" + others
+                           : "none of its grids can be used as fog: " + listing(directory));
 }
 
 const VdbGridEntry& existing_grid(const VdbDirectory& directory, const std::string& wanted, const ByteCursor& file) {
     const VdbGridEntry* grid = grid_called(directory, wanted);
-    if (!grid) refuse(file.where, "has no grid \"" + printable(wanted, 60) + "\", it holds " + listing(directory));
+    if (!grid) refuse(file.where, "has no grid \"" + printable(wanted, 60) + "\"; it has " + listing(directory));
     return *grid;
 }
 }

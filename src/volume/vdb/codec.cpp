@@ -26,7 +26,7 @@ template<class Body> auto guarded(ExitCode code, const std::string& where, const
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {
-        fail(code, where, "OpenVDB says: " + printable(error.what(), 160));
+        fail(code, where, "OpenVDB error: " + printable(error.what(), 160));
     }
 }
 
@@ -64,7 +64,7 @@ void append_leaves(const Tree& tree, std::string_view bytes, std::span<const uin
     std::vector<const typename Tree::LeafNodeType*> nodes;
     nodes.reserve(begins.size());
     tree.getNodes(nodes);
-    if (nodes.size() != begins.size()) throw std::runtime_error("the tree holds another number of leaves");
+    if (nodes.size() != begins.size()) throw std::runtime_error("the tree has the wrong number of leaves");
     result.leaves.reserve(nodes.size());
     for (const auto* node : nodes) result.leaves.emplace_back(Unfilled{}).origin = point(node->origin());
     result.active.resize(nodes.size());
@@ -86,7 +86,7 @@ DecodedTree decoded(std::string_view bytes, const VdbGridEntry& entry, const Vdb
         openvdb::io::setDataCompression(stream, entry.compression);
         grid->setSaveFloatAsHalf(entry.half);
         grid->readTopology(stream);
-        if (source.taken() != topology_end) throw std::runtime_error("the tree ends elsewhere than its bytes do");
+        if (source.taken() != topology_end) throw std::runtime_error("the tree has the wrong length");
     }
     const auto& tree = static_cast<const Grid&>(*grid).tree();
     DecodedTree result;
@@ -131,7 +131,7 @@ template<class Tree> void add_leaves(Tree& tree, std::span<const ivec3> origins,
         tree.addLeaf(node.release());
         ++added;
     }
-    if (tree.leafCount() != added) throw std::runtime_error("two leaves share an origin");
+    if (tree.leafCount() != added) throw std::runtime_error("two leaves have the same origin");
 }
 
 // The leaves of a file in tree order, including those that tiles cover only in part.

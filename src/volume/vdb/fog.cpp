@@ -103,7 +103,7 @@ std::vector<Tile> background_tiles(DecodedTree& tree, const ActiveBox& box, cons
     constexpr int64_t max_cells = 1 << 15;
     const ivec3 first = box.low >> 12, last = box.high >> 12, size = last - first + 1;
     if (int64_t{size.x} * size.y * size.z > max_cells)
-        refuse(where, "has a background other than 0 and voxels too far apart to fill it in between");
+        refuse(where, "has a nonzero background and voxels too far apart to fill the space between them");
     const auto before = [](ivec3 a, ivec3 b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); };
     std::ranges::sort(tree.root_nodes, before);
 

@@ -141,11 +141,11 @@ void decode_range(std::string_view bytes, std::span<const uint64_t> begins, size
     openvdb::io::setDataCompression(stream, coding.compression);
     openvdb::io::setGridBackgroundValuePtr(stream, &background);
     for (size_t n = first; n < last; ++n) {
-        if (begins[first] + source.taken() != begins[n]) throw std::runtime_error("a leaf ends elsewhere");
+        if (begins[first] + source.taken() != begins[n]) throw std::runtime_error("a leaf has the wrong length");
         decode<T>(stream, coding, leaves[n], active[n]);
     }
     const uint64_t end = last < begins.size() ? begins[last] : bytes.size();
-    if (begins[first] + source.taken() != end) throw std::runtime_error("a leaf ends elsewhere");
+    if (begins[first] + source.taken() != end) throw std::runtime_error("a leaf has the wrong length");
 }
 }
 

@@ -1,24 +1,27 @@
 #include "volume/vdb/memory.h"
 
+#include "base/control_group.h"
 #include "base/error.h"
+#include "base/process.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/bricks/voxel_mask.h"
 
 #include <sys/resource.h>
-#include <unistd.h>
 
-#include <fstream>
+#include <sstream>
 
 namespace tyndall {
 namespace {
 // Memory available to this process: the minimum of the machine's, its cgroup's and its own limit, minus an eighth.
 uint64_t available_memory() {
-    uint64_t most = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+    uint64_t most = machine_memory();
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
         most = std::min<uint64_t>(most, limit.rlim_cur);
-    uint64_t group = 0;
-    if (std::ifstream("/sys/fs/cgroup/memory.max") >> group) most = std::min(most, group);
+    for (const std::string& line : control_group_lines("memory.max")) {
+        uint64_t group = 0;
+        if (std::istringstream(line) >> group) most = std::min(most, group);
+    }
     return most - most / 8;
 }
 }
@@ -33,7 +36,7 @@ void check_memory(uint64_t bytes, const std::string& where) {
     const uint64_t available = available_memory();
     if (bytes <= available) return;
     fail(ExitCode::out_of_memory, where,
-         "needs " + std::to_string(bytes >> 20) + " MB of memory, there are " + std::to_string(available >> 20) +
-             " MB");
+         "needs " + std::to_string(bytes >> 20) + " MB of memory, only " + std::to_string(available >> 20) +
+             " MB are available");
 }
 }

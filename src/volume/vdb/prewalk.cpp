@@ -30,7 +30,8 @@ template<class T> void append_number(std::string& text, T value) {
 
 // The numbers of a metadata value, separated by spaces.
 template<class T> std::string numbers(ByteCursor& file, uint32_t size, size_t count, const std::string& name) {
-    if (size != count * sizeof(T)) file.complain("metadata " + name + " has a size of " + std::to_string(size));
+    if (size != count * sizeof(T))
+        file.complain("metadata " + name + " has an invalid size of " + std::to_string(size));
     std::string text;
     for (size_t i = 0; i < count; ++i) append_number(text, file.value<T>("metadata " + name));
     return text;
@@ -50,10 +51,10 @@ bool read_value(ByteCursor& file, const std::string& name, const std::string& ty
         type.size() == 5 && (type.starts_with("vec") || type.starts_with("mat")) && type[3] >= '2' && type[3] <= '4';
     const size_t count = component_count(type);
     if (type == "string") {
-        if (size > max_metadata) file.complain("metadata " + name + " has a size of " + std::to_string(size));
+        if (size > max_metadata) file.complain("metadata " + name + " has an invalid size of " + std::to_string(size));
         text = file.bytes(size, "metadata " + name);
     } else if (type == "bool") {
-        if (size != 1) file.complain("metadata " + name + " has a size of " + std::to_string(size));
+        if (size != 1) file.complain("metadata " + name + " has an invalid size of " + std::to_string(size));
         text = file.value<char>("metadata " + name) ? "true" : "false";
     } else if (type == "float" || (vector && type[4] == 's')) {
         text = numbers<float>(file, size, count, name);
@@ -71,8 +72,8 @@ bool read_value(ByteCursor& file, const std::string& name, const std::string& ty
 }
 
 VdbMetadata read_metadata(ByteCursor& file) {
-    const auto count = file.value<uint32_t>("the number of metadata");
-    if (count > max_items) file.complain("announces " + std::to_string(count) + " metadata");
+    const auto count = file.value<uint32_t>("the number of metadata entries");
+    if (count > max_items) file.complain("claims " + std::to_string(count) + " metadata entries");
     VdbMetadata metadata;
     const uint64_t start = file.position();
     for (uint32_t i = 0; i < count; ++i) {
@@ -80,7 +81,7 @@ VdbMetadata read_metadata(ByteCursor& file) {
         const std::string type = file.text(max_text, "the type of metadata " + name);
         if (read_value(file, name, type, value)) metadata.emplace_back(std::move(name), std::move(value));
         if (file.position() - start > max_metadata && type != "__delayedload")
-            file.complain("holds more than " + std::to_string(max_metadata >> 20) + " MB of metadata");
+            file.complain("has more than " + std::to_string(max_metadata >> 20) + " MB of metadata");
     }
     return metadata;
 }
@@ -109,12 +110,12 @@ struct Offsets {
 // Reads compression, metadata and transform, from the end of the descriptor up to the tree.
 void read_description(ByteCursor& file, VdbGridEntry& grid, bool whole_needed) {
     grid.compression = file.value<uint32_t>("the compression");
-    if (grid.compression > 7) file.complain("its compression is not known: " + std::to_string(grid.compression));
+    if (grid.compression > 7) file.complain("its compression is unknown: " + std::to_string(grid.compression));
     grid.metadata = read_metadata(file);
     if (const std::string* text = find(grid.metadata, "class")) grid.grid_class = *text;
     const std::string* half = find(grid.metadata, "is_saved_as_half_float");
     if (grid.half != (half && *half == "true"))
-        file.complain("its type and its metadata disagree whether it is stored as half");
+        file.complain("its type and its metadata disagree on whether it is stored as half");
     VdbTransform transform = read_transform(file);
     if (!transform.complete && whole_needed) file.complain(transform.problem);
     grid.index_to_world = transform.index_to_world;
@@ -126,11 +127,11 @@ void check_offsets(ByteCursor& file, const Offsets& offsets, bool instance) {
     const bool ascending = here <= offsets.grid && offsets.grid <= offsets.end &&
                            (instance || (offsets.grid <= offsets.voxels && offsets.voxels <= offsets.end));
     if (!ascending)
-        file.complain("its place in the file makes no sense: " + std::to_string(offsets.grid) + " to " +
+        file.complain("its file offsets are invalid: " + std::to_string(offsets.grid) + " to " +
                       std::to_string(offsets.end));
     if (static_cast<uint64_t>(offsets.end) > file.end())
-        refuse(file.where, "is cut: the grid ends at byte " + std::to_string(offsets.end) + ", the file at byte " +
-                               std::to_string(file.end()));
+        refuse(file.where, "is truncated: the grid ends at byte " + std::to_string(offsets.end) +
+                               ", the file at byte " + std::to_string(file.end()));
 }
 
 VdbGridEntry read_grid(ByteCursor& file, bool has_offsets) {
@@ -152,11 +153,11 @@ VdbGridEntry read_grid(ByteCursor& file, bool has_offsets) {
     // Without offsets, finding the next grid requires walking the tree.
     grid.tree_begin = file.position();
     if (has_offsets) {
-        if (file.position() > static_cast<uint64_t>(offsets.end)) file.complain("its description passes its end");
+        if (file.position() > static_cast<uint64_t>(offsets.end)) file.complain("its header extends past its end");
         file.seek(static_cast<uint64_t>(offsets.end), "the end of the grid");
     } else if (!instance) {
         if (!is_walkable(grid))
-            file.complain("holds " + printable(grid.type, 40) + " values and the file has no offsets to pass it by");
+            file.complain("holds " + printable(grid.type, 40) + " values and the file has no offsets to skip it");
         walk_tree(file, grid);
     }
     grid.tree_end = file.position();
@@ -171,7 +172,7 @@ void connect_instances(const ByteCursor& file, std::vector<VdbGridEntry>& grids)
             if (!parent && other.unique_name == grid.parent && other.parent.empty()) parent = &other;
         if (!parent || parent->type != grid.type || parent->tree_shape != grid.tree_shape)
             refuse(file.where + ": grid \"" + printable(grid.name, 80) + "\"",
-                   "shares the voxels of a grid that is not there: " + printable(grid.parent, 80));
+                   "shares the voxels of a grid that is missing or of another type: " + printable(grid.parent, 80));
         grid.tree_begin = parent->tree_begin, grid.tree_end = parent->tree_end;
         grid.half = parent->half, grid.compression = parent->compression;
     }
@@ -194,7 +195,7 @@ VdbDirectory read_directory(ByteCursor& file) {
     directory.file_version = file.value<uint32_t>("the header");
     if (directory.file_version < oldest_version || directory.file_version > newest_version)
         file.complain("has file version " + std::to_string(directory.file_version) + "; " +
-                      std::to_string(oldest_version) + " to " + std::to_string(newest_version) + " can be read");
+                      std::to_string(oldest_version) + " to " + std::to_string(newest_version) + " are supported");
     directory.library_major = file.value<uint32_t>("the header");
     directory.library_minor = file.value<uint32_t>("the header");
     const auto has_offsets = file.value<uint8_t>("the header");
@@ -203,9 +204,9 @@ VdbDirectory read_directory(ByteCursor& file) {
 
     directory.metadata = read_metadata(file);
     const auto count = file.value<int32_t>("the number of grids");
-    if (count == 0) refuse(file.where, "holds no grids");
+    if (count == 0) refuse(file.where, "contains no grids");
     if (count < 0 || count > static_cast<int32_t>(max_grids))
-        file.complain("announces " + std::to_string(count) + " grids");
+        file.complain("claims " + std::to_string(count) + " grids");
 
     const std::string where = file.where;
     for (int32_t i = 0; i < count; ++i) {

@@ -1,5 +1,7 @@
 #include "volume/vdb/transform.h"
 
+#include "base/text.h"
+
 #include <array>
 
 namespace tyndall {
@@ -15,7 +17,7 @@ dvec3 read_scales(ByteCursor& file) {
         const double inverse = 1 / scale[axis];
         const bool agrees = is_close(derived[0][axis], std::abs(scale[axis])) && is_close(derived[1][axis], inverse) &&
                             is_close(derived[2][axis], inverse * inverse) && is_close(derived[3][axis], inverse / 2);
-        if (!agrees) file.complain("the transform contradicts itself: its scale is not its voxel size");
+        if (!agrees) file.complain("its transform is inconsistent: its scale does not match its voxel size");
     }
     return scale;
 }
@@ -55,19 +57,20 @@ bool read_linear_map(ByteCursor& file, const std::string& type, dmat4& matrix) {
 
 std::string matrix_problem(const dmat4& matrix) {
     for (int i = 0; i < 16; ++i)
-        if (!std::isfinite(matrix[i / 4][i % 4])) return "its transform holds a number that is not finite";
+        if (!std::isfinite(matrix[i / 4][i % 4])) return "its transform has a value that is not finite";
     if (matrix[0][3] != 0 || matrix[1][3] != 0 || matrix[2][3] != 0 || matrix[3][3] != 1)
         return "its transform is a projection, not an affine map";
     const double determinant = glm::determinant(matrix);
     if (!(std::abs(determinant) >= 1e-30 && std::abs(determinant) <= 1e30))
-        return "its transform is singular or absurd (determinant " + std::to_string(determinant) + ")";
+        return "its transform is singular or out of range (determinant " + formatted("%g", determinant) + ")";
 
     // Points must survive the round trip to world space and back.
     const dmat4 inverse = glm::inverse(matrix);
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec4 index(corner & 1 ? 1e4 : 0, corner & 2 ? 1e4 : 0, corner & 4 ? 1e4 : 0, 1);
         const glm::dvec4 error = inverse * (matrix * index) - index;
-        if (!(glm::dot(error, error) < 1e-6)) return "its transform is too far out or too flat to be inverted";
+        if (!(glm::dot(error, error) < 1e-6))
+            return "its transform is too far from the origin or too flat to be inverted";
     }
     return {};
 }
@@ -82,10 +85,10 @@ VdbTransform read_transform(ByteCursor& file) {
         file.skip(8 * sizeof(double), "the transform");
         const std::string second = file.text(256, "the name of the transform");
         result.complete = read_linear_map(file, second, result.index_to_world);
-        result.problem = "it lives in a camera frustum; resample it to a linear transform first";
+        result.problem = "its transform is a camera frustum; resample the grid to a linear transform first";
     } else {
         result.complete = false;
-        result.problem = "its kind of transform is not known: " + type;
+        result.problem = "its transform type is unknown: " + type;
     }
     return result;
 }

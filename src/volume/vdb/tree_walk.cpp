@@ -105,17 +105,17 @@ void TreeWalk::read_root_key(std::array<int32_t, 3>& key) {
     for (const int32_t c : key) {
         if (c & 4095) file_.complain("a root node lies at " + std::to_string(c) + ", not a multiple of 4096");
         if (c < -largest_coordinate || c > largest_coordinate - 4096)
-            file_.complain("a root node lies at " + std::to_string(c) + ", further out than 2^24 voxels");
+            file_.complain("a root node lies at " + std::to_string(c) + ", more than 2^24 voxels from the origin");
     }
 }
 
 void TreeWalk::read_root() {
-    if (file_.value<int32_t>("the tree") != 1) file_.complain("its tree does not hold one buffer");
+    if (file_.value<int32_t>("the tree") != 1) file_.complain("its tree must have exactly one buffer");
     file_.skip(format_.value_bytes, "the background");
     const auto tiles = file_.value<uint32_t>("the number of root tiles");
     const auto nodes = file_.value<uint32_t>("the number of root nodes");
     if (tiles > file_.left() / (13 + format_.value_bytes) || nodes > file_.left() / (12 + 2 * 4096))
-        file_.complain("is cut or damaged: announces " + std::to_string(tiles) + " root tiles and " +
+        file_.complain("is truncated or damaged: claims " + std::to_string(tiles) + " root tiles and " +
                        std::to_string(nodes) + " root nodes");
 
     std::vector<std::array<int32_t, 3>> keys(uint64_t{tiles} + nodes);
@@ -135,13 +135,13 @@ void TreeWalk::read_root() {
         read_upper_node();
     }
     std::ranges::sort(keys);
-    if (std::ranges::adjacent_find(keys) != keys.end()) file_.complain("two root nodes share a place");
+    if (std::ranges::adjacent_find(keys) != keys.end()) file_.complain("duplicate root node");
 }
 
 void TreeWalk::read_upper_node() {
     Mask<32768> children, active;
     children.read(file_, "an internal node"), active.read(file_, "an internal node");
-    if (children.overlaps(active)) file_.complain("an internal node holds a child and a value in one place");
+    if (children.overlaps(active)) file_.complain("an internal node has a child and a value in the same slot");
     ++counts_.upper_nodes;
     const uint64_t tiles = active.count();
     counts_.active_tiles += tiles, counts_.active_voxels += tiles << 21;
@@ -152,7 +152,7 @@ void TreeWalk::read_upper_node() {
 void TreeWalk::read_lower_node() {
     Mask<4096> children, active;
     children.read(file_, "an internal node"), active.read(file_, "an internal node");
-    if (children.overlaps(active)) file_.complain("an internal node holds a child and a value in one place");
+    if (children.overlaps(active)) file_.complain("an internal node has a child and a value in the same slot");
     ++counts_.lower_nodes;
     const uint64_t tiles = active.count();
     counts_.active_tiles += tiles, counts_.active_voxels += tiles << 9;
@@ -184,7 +184,7 @@ template<size_t Bits> void TreeWalk::read_values(const Mask<Bits>& active) {
     constexpr int8_t one_value = 2, mask_only = 3, mask_and_value = 4, mask_and_two = 5, all_values = 6;
     const auto kind = file_.value<int8_t>("the values of a node");
     if (kind < 0 || kind > all_values)
-        file_.complain("the values of a node are of the unknown kind " + std::to_string(kind));
+        file_.complain("the values of a node are of an unknown kind: " + std::to_string(kind));
     if (kind == one_value || kind == mask_and_value) file_.skip(format_.value_bytes, "an inactive value");
     if (kind == mask_and_two) file_.skip(2 * format_.value_bytes, "inactive values");
     if (kind >= mask_only && kind <= mask_and_two) file_.skip(Bits / 8, "a mask of inactive values");
@@ -203,7 +203,7 @@ void TreeWalk::read_chunk(uint64_t bytes) {
     const auto size = static_cast<uint64_t>(length);
     const bool raw = length <= 0;
     if (raw ? 0 - size != bytes : size > bytes + max_overhead)
-        file_.complain("a chunk of " + std::to_string(bytes) + " bytes of values has a length of " +
+        file_.complain("a chunk of " + std::to_string(bytes) + " bytes of values has an invalid length of " +
                        std::to_string(length));
     if (!raw && (compression_ & vdb_blosc)) return check_blosc_header(size, bytes);
     file_.skip(raw ? bytes : size, "the values of a node");
@@ -216,7 +216,7 @@ void TreeWalk::check_blosc_header(uint64_t chunk, uint64_t bytes) {
     file_.skip(4, "a compressed chunk");
     const auto sizes = file_.value<std::array<uint32_t, 3>>("a compressed chunk");
     if (sizes[0] != bytes || sizes[2] != chunk || (bytes > 0 && (sizes[1] == 0 || sizes[1] > bytes)))
-        file_.complain("the header of a compressed chunk lies about its size");
+        file_.complain("the header of a compressed chunk has the wrong size");
     file_.skip(chunk - header_bytes, "the values of a node");
 }
 }
@@ -233,7 +233,7 @@ bool is_vector_float(const VdbGridEntry& grid) {
 
 VdbTreeCounts walk_tree(ByteCursor& bytes, const VdbGridEntry& grid) {
     const TreeFormat* format = find_format(grid);
-    if (!format) bytes.complain("holds " + printable(grid.type, 40) + " values");
+    if (!format) bytes.complain("has values of an unsupported type: " + printable(grid.type, 40));
     return TreeWalk(bytes, grid, *format).walk();
 }
 }

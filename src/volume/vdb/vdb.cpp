@@ -100,7 +100,7 @@ SparseVolume cleaned_volume(DecodedTree tree, const VdbGridEntry& grid, const By
 // Distances are known only within the narrow band, whose half width is the background value.
 void check_width(const ValueMap& map, const DecodedTree& tree, const std::string& where) {
     if (!(map.width > tree.background) || !(tree.background > 0)) return;
-    refuse(where, formatted("its narrow band is %g wide, in the file's units: a \"width\" of %g passes it",
+    refuse(where, formatted("its narrow band has a half width of %g, in the file's units; a \"width\" of %g exceeds it",
                             static_cast<double>(tree.background), static_cast<double>(map.width)));
 }
 
@@ -161,7 +161,7 @@ VelocityVolume read_velocity(const std::filesystem::path& path, std::span<const 
     const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file);
     const bool vectors = is_vector_float(*grids[0]);
     if (!vectors && grids.size() == 1)
-        refuse(label(file, *grids[0]), "holds one number a voxel; a velocity is a grid of vectors, or three grids");
+        refuse(label(file, *grids[0]), "has one number per voxel; velocity needs a vector grid or three scalar grids");
     VelocityVolume velocity;
     VdbReadReport mended;
     mended.grid = names.size() == 1 ? names[0] : grids[0]->name, mended.empty = true;
@@ -254,13 +254,13 @@ void write_vdb(const std::filesystem::path& path, const SparseVolume& volume, co
 std::string VdbReadReport::summary() const {
     std::vector<std::string> parts;
     if (empty) parts.push_back("is empty");
-    if (non_finite) parts.push_back(std::to_string(non_finite) + " voxels that are not finite set to 0");
+    if (non_finite) parts.push_back(std::to_string(non_finite) + " non-finite voxels set to 0");
     if (negative) parts.push_back(std::to_string(negative) + " negative voxels set to 0");
     if (above)
-        parts.push_back(std::to_string(above) + formatted(" voxels above %g set to it", static_cast<double>(most)));
+        parts.push_back(std::to_string(above) + formatted(" voxels above %g clamped to it", static_cast<double>(most)));
     if (background != 0)
-        parts.push_back(
-            formatted("background %g dropped outside the box of the active voxels", static_cast<double>(background)));
+        parts.push_back(formatted("background %g ignored outside the bounding box of the active voxels",
+                                  static_cast<double>(background)));
     return parts.empty() ? "" : "grid \"" + printable(grid, 80) + "\": " + joined(parts, ", ");
 }
 }

@@ -124,7 +124,7 @@ TEST(CacheFile, RefusesAnotherThing) {
     write(scratch / "a.cache", something());
     const std::string other(32, 'b');
     EXPECT_THAT(error_text(ExitCode::refused, [&] { open_cache_file(scratch / "a.cache", other); }),
-                HasSubstr("another thing"));
+                HasSubstr("does not match its name"));
 
     // A body that hashes well, but says more elements than there are, or has other fields than the reader asks for.
     const std::string counts(8, '\x7f');
@@ -133,9 +133,9 @@ TEST(CacheFile, RefusesAnotherThing) {
     std::vector<double> values;
     std::string text;
     CacheReader reader(open_cache_file(scratch / "b.cache", made_from)), again = reader, unread = reader;
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { reader(values); }), HasSubstr("ends too early"));
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { again(text); }), HasSubstr("ends too early"));
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { unread.finish(); }), HasSubstr("more than it should"));
+    EXPECT_THAT(error_text(ExitCode::refused, [&] { reader(values); }), HasSubstr("its data ends early"));
+    EXPECT_THAT(error_text(ExitCode::refused, [&] { again(text); }), HasSubstr("its data ends early"));
+    EXPECT_THAT(error_text(ExitCode::refused, [&] { unread.finish(); }), HasSubstr("extra data at its end"));
 }
 
 TEST(MappedFile, TellsAFileThatChanged) {
@@ -174,7 +174,7 @@ TEST(MappedFileDeathTest, ACutFileEndsTheProcessWithItsName) {
             std::filesystem::resize_file(scratch / "second", 10);
             if (second.bytes().back() == 'x') std::abort();
         },
-        testing::ExitedWithCode(static_cast<int>(ExitCode::unreadable)), "tyndall: error: .*second: was cut");
+        testing::ExitedWithCode(static_cast<int>(ExitCode::unreadable)), "tyndall: error: .*second: was truncated");
 }
 
 TEST(MappedFileDeathTest, OtherFaultsStayFaults) {

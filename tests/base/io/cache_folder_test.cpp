@@ -96,7 +96,8 @@ TEST(CacheFolder, FilesThatAreGoneCutOrOthersAreNamed) {
     const std::string name = scratch.names()[0], good = bytes_of(scratch / name);
     const auto text_of = [&](ExitCode code) { return error_text(code, [&] { ask(to_read(*written).get(), maker); }); };
     scratch.put(name, good.substr(0, 20));
-    EXPECT_THAT(text_of(ExitCode::unreadable), testing::AllOf(HasSubstr(name), HasSubstr("is cut: 20 of")));
+    EXPECT_THAT(text_of(ExitCode::unreadable),
+                testing::AllOf(HasSubstr(name), HasSubstr("is truncated or was replaced: has 20 of")));
     std::string bad = good;
     bad.back() ^= 1;
     scratch.put(name, bad); // its time stamp tells
@@ -106,7 +107,7 @@ TEST(CacheFolder, FilesThatAreGoneCutOrOthersAreNamed) {
     CacheWriter writer;
     fields(other, writer);
     write_cache_file(scratch / name, made_from_hash(*written, "heavy thing", "x"), 0, writer.pieces());
-    EXPECT_THAT(text_of(ExitCode::refused), HasSubstr("another file than was prepared"));
+    EXPECT_THAT(text_of(ExitCode::refused), HasSubstr("is not the file that was prepared"));
     std::filesystem::remove(scratch / name);
     EXPECT_THAT(text_of(ExitCode::unreadable), HasSubstr("no such file"));
 

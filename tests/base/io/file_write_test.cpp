@@ -115,7 +115,7 @@ TEST(FileWrite, MissingDirectoryIsMadeByTheCheckOnly) {
     EXPECT_EQ(bytes_of(path), "x");
     scratch.put("file", "");
     EXPECT_THAT(error_text(ExitCode::unwritable, [&] { check_output(scratch / "file/below.exr"); }),
-                HasSubstr("cannot make its directory: Not a directory"));
+                HasSubstr("cannot create its directory: Not a directory"));
 }
 
 TEST(FileWrite, CheckLeavesAnExistingFileAlone) {
@@ -164,7 +164,7 @@ TEST(FileWrite, AFullDiskLeavesTheOldFileAndNoTemporary) {
 
 TEST(FileWrite, AnUnwritableDirectoryIsFoundByTheCheck) {
     const std::string text = error_text(ExitCode::unwritable, [] { check_output("/proc/tyndall.exr"); });
-    EXPECT_THAT(text, testing::StartsWith("/proc/tyndall.exr: cannot make a file in its directory: "));
+    EXPECT_THAT(text, testing::StartsWith("/proc/tyndall.exr: cannot create a file in its directory: "));
 }
 
 TEST(FileWrite, AReaderNeverSeesHalfAFile) {

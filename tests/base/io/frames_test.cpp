@@ -67,8 +67,8 @@ const Illegal illegal_ranges[] = {{"", "column 1: expected a frame number"},
                                   {"1-5x0", "column 5: the step must not be 0"},
                                   {"1-5x-1", "column 5: the step leads away"},
                                   {"5-1x1", "column 5: the step leads away"},
-                                  {"5-1", "column 1: the range runs backwards; 5-1x-1 counts down"},
-                                  {"2,5--1", "column 3: the range runs backwards; 5--1x-1 counts down"},
+                                  {"5-1", "column 1: the range runs backwards; count down with 5-1x-1"},
+                                  {"2,5--1", "column 3: the range runs backwards; count down with 5--1x-1"},
                                   {"1:5", "column 2: expected FIRST-LAST before the step"},
                                   {"1-10:0", "column 6: the step must not be 0"},
                                   {"1-10y2", "column 5: unexpected 'y'"},
@@ -201,7 +201,8 @@ TEST(FramePattern, AnythingThatPrintfMightTakeOtherwiseIsRefused) {
         EXPECT_THAT(error_text(ExitCode::usage, [&] { has_frame_token(pattern); }), HasSubstr("only %d and %04d"))
             << pattern;
     for (const char* pattern : {"####.##", "%04d.####", "$F.$F", "$F4_%d", "#/#", "@@.@@", "<F>#"})
-        EXPECT_THAT(error_text(ExitCode::usage, [&] { frame_name(pattern, 1); }), HasSubstr("a second place"))
+        EXPECT_THAT(error_text(ExitCode::usage, [&] { frame_name(pattern, 1); }),
+                    HasSubstr("already has a frame number"))
             << pattern;
     for (const char* pattern : {"#############", "%013d", "$F13", "@@@@@@@@@@@@@", "<F13>", "%099999999999999999999d"})
         EXPECT_THAT(error_text(ExitCode::usage, [&] { frame_name(pattern, 1); }), HasSubstr("at most 12 digits"))

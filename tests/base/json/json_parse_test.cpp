@@ -114,9 +114,9 @@ TEST(JsonParse, RefusesNumbersBeyondDouble) {
 }
 
 TEST(JsonParse, RefusesAKeyThatIsThereTwice) {
-    EXPECT_THAT(refusal(R"({"a": 1, "a": 2})"), HasSubstr("a.json: /a: the key is there twice"));
+    EXPECT_THAT(refusal(R"({"a": 1, "a": 2})"), HasSubstr("a.json: /a: the key appears twice"));
     EXPECT_THAT(refusal(R"({"l": [{}, {"x/y": 1, "b": {"a": 0}, "x\/y": 2}]})"),
-                HasSubstr("a.json: /l/1/x~1y: the key is there twice"));
+                HasSubstr("a.json: /l/1/x~1y: the key appears twice"));
     EXPECT_NO_THROW(parse_json(R"({"a": {"a": 1}, "b": {"a": [{"a": 1}, {"a": 2}]}})", "a.json"));
 }
 
@@ -131,8 +131,8 @@ TEST(JsonParse, DepthEndsAt64) {
 }
 
 TEST(JsonParse, RefusesZeroBytesInStrings) {
-    EXPECT_THAT(refusal(R"({"file": "a.vdb\u0000.txt"})"), HasSubstr("a.json: /file: the string holds a zero byte"));
-    EXPECT_THAT(refusal(R"({"a\u0000": 1})"), HasSubstr("a key holds a zero byte"));
+    EXPECT_THAT(refusal(R"({"file": "a.vdb\u0000.txt"})"), HasSubstr("a.json: /file: the string contains a zero byte"));
+    EXPECT_THAT(refusal(R"({"a\u0000": 1})"), HasSubstr("a key contains a zero byte"));
     EXPECT_THAT(refusal(std::string("[\0]", 3)), HasSubstr("line 1, column 2: "));
 }
 

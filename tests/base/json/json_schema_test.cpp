@@ -83,7 +83,7 @@ TEST(JsonSchema, SaysWhereAndWhatWasExpected) {
         {R"("camera": {"FOV": 45})", R"(/camera/FOV: unknown key; did you mean "fov"?)"},
         {R"("camera": {"shift": 1})", R"(/camera/shift: unknown key; did you mean "vertical_shift"?)"},
         {R"("camera": {"vert": 1})", R"(/camera/vert: unknown key; did you mean "vertical_shift"?)"},
-        {R"("camera": {"banana": 1})", R"(/camera/banana: unknown key; known here: "fov", "vertical_shift", "near")"},
+        {R"("camera": {"banana": 1})", R"(/camera/banana: unknown key; allowed here: "fov", "vertical_shift", "near")"},
         {R"("camera": {})", R"(/camera: missing key "fov")"},
         {R"("camera": {"fov": "wide"})", "/camera/fov: expected a number, got a string"},
         {R"("camera": {"fov": 0})", "/camera/fov: must be above 0 (is 0)"},
@@ -106,7 +106,7 @@ TEST(JsonSchema, SaysWhereAndWhatWasExpected) {
         {R"("lights": [1, 2, 3, 4])", "/lights: must have at most 3 items (has 4)"},
         {R"("media": [{"type": "even"}])", R"(/media/0: missing key "extinction")"},
         {R"("media": [{"type": "even", "path": "a"}])",
-         R"(/media/0/path: unknown key; known here: "type", "extinction")"},
+         R"(/media/0/path: unknown key; allowed here: "type", "extinction")"},
         {R"("media": [{"type": "evn", "extinction": 1}])",
          R"(/media/0/type: expected one of "even", "file"; got "evn")"},
         {R"("media": [{"tpye": "file", "path": "a"}])", R"(/media/0/tpye: unknown key; did you mean "type"?)"},
@@ -160,9 +160,9 @@ TEST(JsonSchema, HugeStringsAndKeysAreRefusedBeforeAnyPatternSeesThem) {
     };
     const std::string huge(5000000, 'a');
     EXPECT_THAT(refusal(R"({"version": 1, "name": ")" + huge + "\"}"),
-                HasSubstr("a.json: /name: a text of 5000000 bytes"));
+                HasSubstr("a.json: /name: a string of 5000000 bytes"));
     EXPECT_THAT(refusal(R"({"version": 1, "free": {")" + huge + "\": 1}}"),
-                HasSubstr("a.json: /free: a text of 5000000 bytes"));
+                HasSubstr("a.json: /free: a string of 5000000 bytes"));
     EXPECT_THAT(refusal(R"({"version": 1, "name": ")" + huge.substr(0, 10000) + "\"}"),
                 HasSubstr("/name: must have at most 5"));
     EXPECT_THAT(refusal("{\"" + huge.substr(0, 9999) + "\": 1}"), HasSubstr("unknown key"));

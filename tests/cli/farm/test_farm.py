@@ -156,7 +156,7 @@ class Submit(FarmTest):
         submit = ["submit", "slurm", self.scene, "-o", out]
         for code, words, arguments in (
                 (2, ["ENGINE", "slurm"], ["submit", "slrm", self.scene, "-o", out]),
-                (2, ["--parts", "2 parts at most"], [*submit, "--samples", 2, "--parts", 3]),
+                (2, ["--parts", "at most 2 parts"], [*submit, "--samples", 2, "--parts", 3]),
                 (2, ["--parts"], [*submit, "--parts", 0]), (2, ["--chunk"], [*submit, "--target-error", 0.1, "--chunk", 2]),
                 (2, ["--time-budget"], [*submit, "--time-budget", 2]), (2, ["frames 1-", "column 3"], [*submit, "--frames", "1-"]),
                 (2, ["--mode"], [*submit, "--mode", "marhc"]), (2, ["--run"], [*submit, "--run", "--dry-run"]),
@@ -205,9 +205,9 @@ class Status(FarmTest):
         damaged = bytearray(whole)
         damaged[-20] ^= 1
         for name, content, why in (
-                (self.part(1, 1), whole[:-1], "short"), (self.part(1, 2), whole[:100], "short"), (self.part(2, 1), b"", "short"),
-                (self.part(2, 2), good[self.part(1, 2)], "another frame"), (self.part(3, 1), good[self.part(3, 2)], "another division"),
-                (self.part(3, 2), b"x" * 5000, "no OpenEXR")):
+                (self.part(1, 1), whole[:-1], "truncated"), (self.part(1, 2), whole[:100], "truncated"), (self.part(2, 1), b"", "truncated"),
+                (self.part(2, 2), good[self.part(1, 2)], "another frame"), (self.part(3, 1), good[self.part(3, 2)], "not the expected part"),
+                (self.part(3, 2), b"x" * 5000, "not a scanline OpenEXR image")):
             name.write_bytes(content)
             told = self.status()
             self.assertEqual([row["file"] for row in told["suspicious"]], [str(name.relative_to(self.folder))])
@@ -228,7 +228,7 @@ class Status(FarmTest):
         shutil.rmtree(self.folder)
         self.submit("slurm", "--parts", 2)
         self.part(2, 2).write_bytes(foreign)
-        self.assertEqual(self.status()["suspicious"][0]["why"], "of another plan")
+        self.assertEqual(self.status()["suspicious"][0]["why"], "was made from another plan")
 
     def test_a_frame_of_another_plan(self):
         self.submit("slurm", "--seed", 5)
@@ -240,7 +240,7 @@ class Status(FarmTest):
         self.run_commands(self.status())
         frame.write_bytes(foreign)
         told = self.status()
-        self.assertEqual((told["finished"], [row["why"] for row in told["suspicious"]]), (2, ["of another plan"]))
+        self.assertEqual((told["finished"], [row["why"] for row in told["suspicious"]]), (2, ["was made from another plan"]))
 
     def test_temporaries_and_cut_frames(self):
         self.submit("slurm")
@@ -251,7 +251,7 @@ class Status(FarmTest):
         told = self.status()
         self.assertEqual((told["finished"], told["temporaries"], told["missing_parts"]), (2, 1, 0))
         said = run("status", self.folder).stdout
-        for words in ("finished: 2 of 3 frames", "temporary: 1 file,", "0002.exr: short", "submit.sh", "tyndall merge"):
+        for words in ("finished: 2 of 3 frames", "temporary: 1 file,", "0002.exr: truncated", "submit.sh", "tyndall merge"):
             self.assertIn(words, said)
         self.run_commands(told)
         self.assertEqual(self.status()["finished"], 3)
@@ -264,7 +264,7 @@ class Status(FarmTest):
         self.assertEqual(merged.returncode, 1, merged.stderr)
         told = self.status()
         self.assertEqual((told["finished"], told["missing_parts"]), (0, 1))
-        self.assertEqual(told["suspicious"][0]["why"], "merged while parts were missing")
+        self.assertEqual(told["suspicious"][0]["why"], "was merged while parts were missing")
         self.run_commands(told)
         self.assertEqual(self.status()["finished"], 1)
 

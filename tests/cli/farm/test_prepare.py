@@ -93,7 +93,7 @@ class PrepareTest(ProgramTest):
             data = file.read_bytes()
             for size in (0, 100, len(data) // 2, len(data) - 1):
                 file.write_bytes(data[:size])
-                self.refuse(4, [file.name, "is cut", f"{size} of {len(data)} bytes"], *render)
+                self.refuse(4, [file.name, "is truncated", f"{size} of {len(data)} bytes"], *render)
             file.unlink()
             self.refuse(4, [file.name, "no such file"], *render)
             file.write_bytes(data)
@@ -122,7 +122,7 @@ class PrepareTest(ProgramTest):
         manifest.write_text(text[:-20])
         self.refuse(3, ["frame.0001.json"], "render", "--plan", plan, "-o", self.path("y.exr"), "-q")
         manifest.write_text(text.replace("bricks-", "../bricks-"))
-        self.refuse(3, ["frame.0001.json", "names of files of its folder"], "render", "--plan", plan, "-o",
+        self.refuse(3, ["frame.0001.json", "names of files in its folder"], "render", "--plan", plan, "-o",
                     self.path("y.exr"), "-q")
 
     def start_long(self, plan):
@@ -158,7 +158,7 @@ class PrepareTest(ProgramTest):
             self.assertEqual(process.wait(), 4)
             said = process.stderr.read()
             process.stderr.close()
-            self.assertRegex(said, r"^tyndall: error: .*bricks-[0-9a-f]{32}\.cache: was (cut|changed).*\n$")
+            self.assertRegex(said, r"^tyndall: error: .*bricks-[0-9a-f]{32}\.cache: was (truncated|changed).*\n$")
             self.assertFalse(self.path("long.exr").exists())
             shutil.rmtree(self.cache)
             self.prepare(plan)

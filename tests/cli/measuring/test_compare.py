@@ -193,7 +193,7 @@ class Limits(Compare):
         layer = self.picture("layer.exr", grey(2, **fog))
         report = self.report(layer, layer, code=6)
         self.assertEqual(report["layers"]["inscatter"]["non_finite"], {"test": 16, "reference": 16})
-        self.assertIn("left out", run("compare", layer, layer).stdout)
+        self.assertIn("ignored", run("compare", layer, layer).stdout)
         nothing = self.picture("nothing.exr", grey(NAN))
         self.assertIsNone(self.report(nothing, self.pair[1], code=6)["metrics"]["rmse"])
         self.assertEqual(run("compare", nothing, self.pair[1], "--fail-above", "rmse=1e9").returncode, 1)
@@ -233,7 +233,7 @@ class Refusals(Compare):
     def test_files_without_colour(self):
         reference = self.picture("b.exr", grey(1))
         depth = self.picture("depth.exr", {"Z": 1, "A": 1, "view.combined.R": 1})
-        self.refuse(3, ["depth.exr", "no colour", "Z", "view.combined.R"], "compare", depth, reference)
+        self.refuse(3, ["depth.exr", "no color", "Z", "view.combined.R"], "compare", depth, reference)
         self.refuse(3, ["depth.exr"], "compare", reference, depth)
 
     def test_files_that_are_missing_or_something_else(self):

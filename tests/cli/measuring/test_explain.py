@@ -35,6 +35,17 @@ class Explain(ProgramTest):
         self.assertLess(abs(march["difference"]), 0.05)
         self.assertIn("standard_error", next(mode for mode in report["modes"] if mode["mode"] == "path"))
 
+    def test_every_kind_of_light_has_its_name(self):
+        face = {"position": [0, 1.5, 0], "target": [0, 0, 0], "intensity": 50, "radius": 0.3}
+        lights = [{"name": kind, "type": kind, **face} for kind in ("disc", "sphere", "rectangle")]
+        lights[1].pop("target"), lights[2].pop("radius")
+        lights[2] |= {"width": 0.6, "height": 0.4}
+        path = self.write("faces.json", scene(lights=lights))
+        asked = ("explain", path, "--pixel", "32,18", "--modes", "none", "-q")
+        told = json.loads(self.succeed(*asked, "--json").stdout)["lights"]
+        self.assertEqual([light["type"] for light in told], ["disc", "sphere", "rectangle"])
+        self.assertLessEqual(max(map(len, self.succeed(*asked).stdout.splitlines())), 100)
+
     def test_drawing_and_table(self):
         svg, table = self.path("new/ray.svg"), self.path("ray.csv")
         self.succeed("explain", WINDOW, "--pixel", "80,45", "--res", "160x90", "--modes", "march,cone", "-q",

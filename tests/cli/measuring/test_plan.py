@@ -23,7 +23,7 @@ class Plan(ProgramTest):
         text = self.succeed("plan", self.scene, "--progress", "none").stdout
         self.assertIn("error at most 0.05 of the mean", text)
         self.assertIn("shadows of spot", text)
-        self.assertIn("there is nothing that could cast them", text)
+        self.assertIn("nothing in the scene could cast them", text)
         self.assertIn("artistic: no error bound", text)
         self.assertIn("tyndall render", text.splitlines()[-1])
 

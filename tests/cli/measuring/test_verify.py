@@ -17,7 +17,14 @@ class Verify(ProgramTest):
         for topic in ("same bits", "units of length", "lights add up", "white furnace", "two methods"):
             self.assertIn(topic, result.stdout)
         self.assertIn("all hold", result.stderr)
-        self.assertNotIn("OFF", result.stdout)
+        self.assertNotIn("FAIL", result.stdout)
+
+    def test_a_scene_with_area_lights_holds(self):
+        content = json.loads(self.scene.read_text())
+        content["lights"] = [{"name": "panel", "type": "rectangle", "position": [0, 1.5, 0], "target": [0, 0, 0], "width": 0.6,
+                              "height": 0.4, "intensity": 50}]
+        result = self.succeed("verify", self.write("panel.json", content), *self.small)
+        self.assertIn("units of length", result.stdout)
 
     def test_json_holds_every_figure(self):
         report = json.loads(self.succeed("verify", self.scene, *self.small, "--json", "-q").stdout)
@@ -38,7 +45,7 @@ class Verify(ProgramTest):
         content = json.loads(self.scene.read_text())
         content["lights"].append(sky)
         result = self.succeed("verify", self.write("sky.json", content), *self.small)
-        self.assertNotIn("OFF", result.stdout)
+        self.assertNotIn("FAIL", result.stdout)
 
     def test_example_scene_with_surfaces(self):
         self.succeed("verify", SOURCE / "scenes/window.json", "--res", "32x18", "--samples", "64", "--frame", "5")

@@ -53,10 +53,10 @@ class Layers(ProgramTest):
         self.assertIn("pixel.samples=2", self.report()[1]["tyndall:settings"])
 
     def test_settings_of_another_mode_are_said_to_be_idle(self):
-        self.assertIn("path.orders=3 changes nothing", self.render("--set", "path.orders=3", "--samples", "1").stderr)
-        self.assertIn("terms.light=off changes nothing",
+        self.assertIn("path.orders=3 has no effect", self.render("--set", "path.orders=3", "--samples", "1").stderr)
+        self.assertIn("terms.light=off has no effect",
                       self.render("--mode", "path", "--samples", "1", "--set", "terms.light=off").stderr)
-        self.assertNotIn("changes nothing", self.render("--set", "terms.light=off", "--samples", "1").stderr)
+        self.assertNotIn("has no effect", self.render("--set", "terms.light=off", "--samples", "1").stderr)
 
     def test_full_floats(self):
         self.render("--aov", "none", "--samples", "1")
@@ -96,7 +96,7 @@ class Target(ProgramTest):
         self.assertLessEqual(float(attributes["tyndall:errorBound"]), 0.05)
         self.assertEqual(int(attributes["tyndall:samples"]), report["frames"][0]["samples"])
         self.assertEqual(report["missed"], 0)
-        self.assertIn("wanted 0.05", result.stderr)
+        self.assertIn("target 0.05", result.stderr)
         self.assertIn("path.orders=2", attributes["tyndall:settings"])
 
     def test_a_miss_writes_the_picture_and_exits_with_1(self):
@@ -181,7 +181,7 @@ class MarchTarget(ProgramTest):
             self.assertAlmostEqual(float(attributes["tyndall:" + name]), frame[key], delta=1e-8)
         self.assertEqual(attributes["tyndall:candidate"], frame["candidate"])
         self.assertEqual(attributes["tyndall:targetError"], "0.05")
-        self.assertIn("wanted 0.05", said)
+        self.assertIn("target 0.05", said)
         self.assertIn(f"({frame['candidate']})", said)
 
         truth = self.path("truth.exr")

@@ -72,9 +72,9 @@ class VolumeMotion(ProgramTest):
             lamp = {"name": "lamp", "type": "point", "position": {"keys": [[0, [0, 2, 0]], [1, [1, 2, 0]]]}, "intensity": 9}
             scene = self.scene("said.json", {"file": "dust.####.vdb", **medium}, lights=[lamp])
             return self.succeed("render", scene, "-o", self.path("a.exr"), "-v").stderr
-        self.assertIn("it stands still for the", said({}))
-        self.assertIn("moves along straight lines by its velocities", said(VELOCITY))
-        self.assertIn("two of its files are mixed", said({"sequence": {"blend": True}}))
+        self.assertIn("it does not move during the", said({}))
+        self.assertIn("moved along straight lines by its velocities", said(VELOCITY))
+        self.assertIn("two of its files are blended", said({"sequence": {"blend": True}}))
 
     def test_bits_do_not_depend_on_threads_and_parts(self):
         for medium in (VELOCITY, {"file": "dust.####.vdb", "sequence": {"blend": True}}):
@@ -96,14 +96,14 @@ class VolumeMotion(ProgramTest):
     def test_what_makes_no_sense_is_refused_in_one_line(self):
         sequence = {"file": "dust.####.vdb"}
         for medium, words in (
-                ({"velocity_unit": "frame"}, ["velocity_unit", "says nothing without"]),
-                ({"velocity_scale": 2}, ["velocity_scale", "says nothing without"]),
+                ({"velocity_unit": "frame"}, ["velocity_unit", "has no effect without"]),
+                ({"velocity_scale": 2}, ["velocity_scale", "has no effect without"]),
                 ({**VELOCITY, "velocity_unit": "hour"}, ["velocity_unit"]),
-                ({"sequence": {"blend": True}}, ["/media/0/sequence/blend", "numbered files"]),
-                ({**sequence, **VELOCITY, "sequence": {"blend": True}}, ["/media/0/grids/velocity", "say one"]),
+                ({"sequence": {"blend": True}}, ["/media/0/sequence/blend", "numbered sequence"]),
+                ({**sequence, **VELOCITY, "sequence": {"blend": True}}, ["/media/0/grids/velocity", "use one"]),
                 ({**sequence, **VELOCITY, "sequence": {"mode": "ping_pong"}}, ["/media/0/grids/velocity", "ping_pong"]),
                 ({"grids": {"velocity": "wind"}}, ["has no grid \"wind\"", "vel"]),
-                ({"grids": {"velocity": "density"}}, ["density", "one number a voxel"]),
+                ({"grids": {"velocity": "density"}}, ["density", "one number per voxel"]),
                 ({**VELOCITY, "velocity_scale": 1e6}, ["its velocity moves it by up to", "velocity_unit"])):
             self.refuse(3, words, "render", self.scene("bad.json", medium), "-o", self.path("a.exr"), "-q")
         self.path("dust.0003.vdb").unlink()

@@ -122,11 +122,11 @@ class Editing(ViewerTest):
         self.assertTrue(self.path("b.png").read_bytes() == self.rendered())
 
     def test_mistakes_end_scripts(self):
-        for line, code, word in (("edit lights/moon/intensity 3", 2, "there is sun, lamp"),
+        for line, code, word in (("edit lights/moon/intensity 3", 2, "available: sun, lamp"),
                                  ("edit lights/sun/intensity -3", 3, "lights/sun/intensity"),
                                  ("edit lights/sun/color \"1 2\"", 2, "three numbers"),
                                  ("select fog", 2, "media/NAME"), ("tab fog", 2, "lights"),
-                                 ("answer save", 2, "nothing was asked"), ("key ctrl+", 2, "no key"),
+                                 ("answer save", 2, "there is no open question"), ("key ctrl+", 2, "no key"),
                                  (f"save-as {self.film}/a.json", 5, "a.json")):
             told = self.view(self.film, ["wait idle", line], "--samples", 1, code=code)
             self.assertIn("script.txt:2", told)

@@ -136,13 +136,13 @@ TEST(Chart, AdvisesNothingThatIsMoreThanHalfWrong) {
 
 TEST(Chart, ListsWhatWasLeftOutBesideTheAdvice) {
     Chart chart = small_chart();
-    EXPECT_EQ(chart_text(chart).find("left out"), std::string::npos);
+    EXPECT_EQ(chart_text(chart).find("skipped"), std::string::npos);
     chart.modes.clear(); // their pictures are on the page
     chart.job.longest = 0.7, chart.threads = 2, chart.load_before = 6;
     chart.left_out = {{"march", "pixel.samples=64", 4, 1.25}, {"march", "pixel.samples=256", 5, 1.25}};
     const std::string text = chart_text(chart), page = chart_html(chart);
     for (const char* words :
-         {"2 settings left out: an image would take more than 700 ms (--longest); other work was "
+         {"2 settings skipped: an image would take more than 700 ms (--longest); other processes were "
           "running (load 6.0 on 2 threads)",
           "march 4, 1.2 s or more: pixel.samples=64", "march 5, 1.2 s or more: pixel.samples=256"}) {
         EXPECT_NE(text.find(words), text.npos) << text;
@@ -198,7 +198,7 @@ TEST(Chart, NamesMarksBelowThePlotAndKeepsWordsOffThem) {
 
 TEST(Chart, SetsOutliersOverABreakOfTheAxis) {
     Chart chart = small_chart();
-    EXPECT_EQ(chart_svg(chart, FrameTime::single, ErrorOf::worse).find("over the break"), std::string::npos);
+    EXPECT_EQ(chart_svg(chart, FrameTime::single, ErrorOf::worse).find("above the break"), std::string::npos);
     const double height = 388; // of the plot
     const auto of = [&](const std::string& svg, const std::string& id) {
         const size_t at = svg.find("data-id='" + id + "'");
@@ -209,7 +209,7 @@ TEST(Chart, SetsOutliersOverABreakOfTheAxis) {
 
     chart.points[3].errors.error = 37;
     const std::string broken = chart_svg(chart, FrameTime::single, ErrorOf::worse);
-    EXPECT_NE(broken.find("over the break: billboard 3700 %"), broken.npos);
+    EXPECT_NE(broken.find("above the break: billboard 3700 %"), broken.npos);
     EXPECT_NE(broken.find("class='break'"), broken.npos);
     EXPECT_GT(of(broken, "march.2") - of(broken, "march.1"), 0.8 * spread) << "the rest keeps its room";
     EXPECT_LT(spread, height);

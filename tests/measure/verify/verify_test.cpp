@@ -75,10 +75,12 @@ TEST(ScaledScene, ScalesEveryLengthAndWhatIsPerLength) {
     Mesh mesh;
     mesh.positions = {{1, 0, 0}};
     scene.meshes = {mesh};
-    LightSource point, sun;
+    LightSource point, sun, screen, panel;
     point.position = vec3(1, 1, 1), point.intensity = 3.0f, point.radius = 0.1f, point.range = 5;
     sun.kind = LightKind::sun, sun.intensity = 7.0f;
-    scene.lights = {point, sun};
+    screen.kind = panel.kind = LightKind::rectangle, screen.width = 2.0f, screen.height = 3.0f;
+    screen.intensity = panel.intensity = 5.0f, panel.unit = LightUnit::lumen;
+    scene.lights = {point, sun, screen, panel};
     MediumSource fog;
     fog.extinction = 0.5f, fog.emission = vec3(2), fog.height_base = 1.0f, fog.height_falloff = 2.0f;
     scene.media = {fog};
@@ -95,6 +97,10 @@ TEST(ScaledScene, ScalesEveryLengthAndWhatIsPerLength) {
     EXPECT_EQ(large.lights[0].radius.at(0), 0.4f);
     EXPECT_EQ(large.lights[0].range, 20);
     EXPECT_EQ(large.lights[1].intensity.at(0), 7);
+    EXPECT_EQ(large.lights[2].width.at(0), 8);
+    EXPECT_EQ(large.lights[2].height.at(0), 12);
+    EXPECT_EQ(large.lights[2].intensity.at(0), 5) << "nits";
+    EXPECT_EQ(large.lights[3].intensity.at(0), 80) << "lumens";
     EXPECT_EQ(large.media[0].extinction.at(0), 0.125f);
     EXPECT_EQ(large.media[0].emission.at(0), vec3(0.5f));
     EXPECT_EQ(large.media[0].scale.at(0), vec3(4));

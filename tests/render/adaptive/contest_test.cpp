@@ -26,10 +26,11 @@ struct LitBox {
     }
 };
 
-// A second passes each time it is looked at.
+// As much time passes each time it is looked at.
 struct StepClock {
+    double step = 1;
     std::shared_ptr<double> seconds = std::make_shared<double>(0);
-    double operator()() const { return *seconds += 1; }
+    double operator()() const { return *seconds += step; }
 };
 }
 
@@ -77,5 +78,15 @@ TEST(Contest, NoneIsMeasuredWhereThatWouldTakeMoreThanItMay) {
     };
     EXPECT_EQ(measured(0.2), 1u);
     EXPECT_GT(measured(0.5), 1u);
+}
+
+TEST(Contest, AVeryLongForecastGrantsTheOthersNoMoreThanTwentyTimesWhatIsKnown) {
+    const LitBox box;
+    const Goal goal{0.05, 0, Quality::preview, StepClock{1e-9}}; // measuring takes next to nothing
+    const auto measured = [&](double share) {
+        return hold_contest(modes(), box.view, box.snapshot, box.settings, goal, share, plain).contenders.size();
+    };
+    EXPECT_EQ(measured(0.2 / 20), 1u);
+    EXPECT_GT(measured(0.5 / 20), 1u);
 }
 }

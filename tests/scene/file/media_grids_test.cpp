@@ -101,7 +101,7 @@ TEST(MediaGrids, MistakesAreNamed) {
         EXPECT_THAT(answer.message, HasSubstr(reason));
     };
     const std::string warm = R"("grids": {"temperature": "t"}, )";
-    refused(R"("grids": {"temperature": "t"})", "/grids/temperature", "says nothing without \"blackbody\"");
+    refused(R"("grids": {"temperature": "t"})", "/grids/temperature", "has no effect without \"blackbody\"");
     refused(R"("grids": {"flame": "t"})", "/grids/flame", "blackbody");
     refused(R"("blackbody": {"convention": "kelvin"})", "/blackbody", "needs a temperature");
     refused(warm + R"("blackbody": {})", "/blackbody", "convention");
@@ -125,7 +125,7 @@ TEST(MediaGrids, WhatEmitsAsItAbsorbsNeedsAnExtinction) {
     const LoadAnswer answer =
         load(folder.put("scene.json", R"({"tyndall": 1, "media": [{"type": "vdb", "file": "fire.vdb",
         "extinction": 0, "grids": {"temperature": "t"}, "blackbody": {"convention": "pbrt"}}]})"));
-    EXPECT_TRUE(has_warning(answer.scene, "/media/0/blackbody: emits as much as the fog absorbs"));
+    EXPECT_TRUE(has_warning(answer.scene, "/media/0/blackbody: emission is proportional to absorption"));
 }
 
 VdbGridInfo grid(const std::string& name, GridRole role, float maximum) {

@@ -58,7 +58,7 @@ TEST(SceneFaces, WhatDoesNotFitIsRefused) {
     expect(aimed + R"("type": "rectangle", "width": 1, "height": 1, "radius": 1)", "/lights/0/radius",
            "this light is a rectangle");
     expect(aimed + R"("type": "disc")", "/lights/0", "needs a radius");
-    expect(aimed + R"("type": "disc", "radius": {"keys": [[0, 1], [1, 0]]})", "/lights/0/radius", "not above 0");
+    expect(aimed + R"("type": "disc", "radius": {"keys": [[0, 1], [1, 0]]})", "/lights/0/radius", "greater than 0");
     expect(place + R"("type": "disc", "radius": 1)", "/lights/0", "needs a direction");
     expect(aimed + R"("type": "sphere", "radius": 1)", "/lights/0/direction", "this light is a sphere");
     expect(place + R"("type": "sphere", "radius": 1, "two_sided": true)", "/lights/0/two_sided",

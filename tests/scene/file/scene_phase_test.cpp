@@ -75,11 +75,11 @@ TEST(ScenePhase, NumbersThatAreMendedAreSaid) {
         EXPECT_TRUE(answer.loaded) << answer.message;
         return has_warning(answer.scene, part);
     };
-    EXPECT_TRUE(warned(R"({"type": "table", "values": [[0, 1], [180, 1]]})", "add up to 12.5664"));
-    EXPECT_FALSE(warned(R"({"type": "table", "values": [[0, 0.0795775], [180, 0.0795775]]})", "add up"));
+    EXPECT_TRUE(warned(R"({"type": "table", "values": [[0, 1], [180, 1]]})", "integrate to 12.5664"));
+    EXPECT_FALSE(warned(R"({"type": "table", "values": [[0, 0.0795775], [180, 0.0795775]]})", "integrate"));
     EXPECT_TRUE(warned(R"({"type": "legendre", "coefficients": [2, 1]})", "first coefficient is 2"));
-    EXPECT_TRUE(warned(R"({"type": "legendre", "coefficients": [1, 1.05]})", "below 0"));
-    EXPECT_FALSE(warned(R"({"type": "legendre", "coefficients": [1, 0.9]})", "below 0"));
+    EXPECT_TRUE(warned(R"({"type": "legendre", "coefficients": [1, 1.05]})", "negative"));
+    EXPECT_FALSE(warned(R"({"type": "legendre", "coefficients": [1, 0.9]})", "negative"));
 }
 
 TEST(ScenePhase, BrokenTablesAreNamedWithTheirLine) {

@@ -148,9 +148,9 @@ TEST(GltfErrors, PlacesThatAreNoPlaces) {
 
     // Harmless ones are used with a warning.
     for (const auto& [node, warning] : std::map<std::string, const char*>{
-             {R"({"mesh":0,"rotation":[0,0,0,0]})", "length 0"},
-             {R"({"mesh":0,"scale":[1,0,1]})", "scaled to nothing"},
-             {R"({"mesh":0,"matrix":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1]})", "scaled to nothing"},
+             {R"({"mesh":0,"rotation":[0,0,0,0]})", "zero or non-finite length"},
+             {R"({"mesh":0,"scale":[1,0,1]})", "a scale of 0"},
+             {R"({"mesh":0,"matrix":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1]})", "a scale of 0"},
              {R"({"mesh":0,"matrix":[1,0,0,0.5,0,1,0,0,0,0,1,0,0,0,0,1]})", "perspective"}}) {
         const LoadAnswer answer = with("nodes", "[" + node + "]", folder);
         EXPECT_TRUE(answer.loaded) << answer.message;
@@ -277,12 +277,12 @@ TEST(GltfErrors, AnimationsThatDoNotFit) {
     };
     const LoadAnswer stuck = played(times, moves, "");
     EXPECT_EQ(stuck.scene.nodes.at(0).translation.times.size(), 2u);
-    EXPECT_TRUE(has_warning(stuck.scene, "forward in time"));
+    EXPECT_TRUE(has_warning(stuck.scene, "time does not increase"));
     expect_refusal(played(times, few, ""), "/animations/0/samplers/0/output");
     expect_refusal(played(times, moves, R"(,"interpolation":"CUBICSPLINE")"), "/animations/0/samplers/0/output");
     expect_refusal(played(times, moves, R"(,"interpolation":"BOUNCE")"), "/animations/0/samplers/0/interpolation");
-    expect_refusal(played(times, broken, ""), "not a number");
-    expect_refusal(played(never, moves, ""), "not a number");
+    expect_refusal(played(times, broken, ""), "non-finite");
+    expect_refusal(played(never, moves, ""), "non-finite");
     expect_refusal(played(moves, moves, ""), "/animations/0/samplers/0/input");
     expect_refusal(played(times, moves, "", "1"), "/animations/0/channels");
 }

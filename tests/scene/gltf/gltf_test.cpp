@@ -117,7 +117,7 @@ TEST(Gltf, TrianglesWithoutNumbersAreDroppedAndCounted) {
     const Scene scene = loaded(gltf);
     EXPECT_EQ(scene.meshes[0].triangles.size(), 2u);
     for (const vec3 position : scene.meshes[0].positions) EXPECT_TRUE(is_finite(position));
-    EXPECT_TRUE(has_warning(scene, "not numbers are left out (2)"));
+    EXPECT_TRUE(has_warning(scene, "non-finite corners are ignored (2)"));
 }
 
 TEST(Gltf, HierarchyMultipliesAndScenesChoose) {
@@ -181,7 +181,7 @@ TEST(Gltf, AnimationsMoveNodes) {
     EXPECT_NEAR(node.rotation.at(1.5).y, h, 1e-6);
     EXPECT_NEAR(node.scale.at(0.5).x, 2, 1e-6) << "without slopes half way in value";
     EXPECT_EQ(node.scale.at(2).x, 5);
-    EXPECT_TRUE(has_warning(scene, "already move")) << "the first animation plays";
+    EXPECT_TRUE(has_warning(scene, "already animated")) << "the first animation plays";
 }
 
 TEST(Gltf, CamerasKeepTheirVerticalAngle) {
@@ -217,7 +217,7 @@ TEST(Gltf, RoundedLimitsAreAccepted) {
     EXPECT_EQ(scene.lights[0].outer_cone.at(0), pi / 2);
     EXPECT_EQ(scene.materials.at(0).base_color, vec3(1, 1, 0.5f));
     EXPECT_LT(scene.cameras.at(0).vertical_fov.at(0), pi);
-    for (const char* part : {"170 degrees", "over 1 are taken for 1", "unknown types"})
+    for (const char* part : {"170 degrees", "above 1 are clamped to 1", "unknown types"})
         EXPECT_TRUE(has_warning(scene, part)) << part;
 }
 

@@ -124,7 +124,7 @@ TEST(Pose, SkinsThatDoNotFitLeaveTheMeshWhereItsNodeIs) {
     gltf.members["skins"] = R"([{"joints":[1]}])";
     Scene scene = scene_of(gltf);
     EXPECT_EQ(place(scene, 0, 0), vec3(50, 0, 0));
-    EXPECT_TRUE(has_warning(scene, "joints that they could follow"));
+    EXPECT_TRUE(has_warning(scene, "without usable joints"));
 
     gltf = skinned();
     gltf.members["scenes"] = R"([{"nodes":[0,1]}])";

@@ -175,6 +175,19 @@ TEST(SceneText, RandomEditsReadBackAsTheyWereInMemory) {
     EXPECT_GT(made, 400);
 }
 
+TEST(SceneText, EveryPathOfASceneIsMoved) {
+    const Scratch scratch;
+    std::filesystem::create_directories(scratch.path() / "deep");
+    const std::string text =
+        moved_text(R"({"lights": [{"name": "file", "image": "a.hdr", "ies": {"file": "b.ies"}, "gobo":
+        {"image": "c.####.png"}}], "media": [{"file": "d.vdb", "phase": {"mix": [{"file": "e.txt"}]}, "grids": {"albedo":
+        {"grid": "file", "file": "f.vdb"}}, "recipe": "/g.json"}]})",
+                   scratch.path(), scratch.path() / "deep");
+    for (const char* moved : {"\"../a.hdr\"", "\"../b.ies\"", "\"../c.####.png\"", "\"../d.vdb\"", "\"../e.txt\"",
+                              "\"../f.vdb\"", "\"name\": \"file\"", "\"grid\": \"file\"", "\"/g.json\""})
+        EXPECT_NE(text.find(moved), text.npos) << moved << " in " << text;
+}
+
 TEST(SceneText, PathsMeanTheSameFilesFromAnotherFolder) {
     Bench bench;
     const std::filesystem::path folder = bench.studio.path();

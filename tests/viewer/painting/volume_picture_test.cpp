@@ -140,7 +140,7 @@ TEST(VolumePicture, LooksAreActions) {
     EXPECT_EQ(*request_of(state, false).volume, (VolumeQuestion{"", VolumeLook::mean, 0, 0.25f}));
     apply(state, parse_action("medium haze"));
     EXPECT_EQ(request_of(state, false).volume->medium, "haze");
-    EXPECT_NE(error_text(ExitCode::usage, [&] { apply(state, parse_action("medium smoke")); }).find("there is haze"),
+    EXPECT_NE(error_text(ExitCode::usage, [&] { apply(state, parse_action("medium smoke")); }).find("available: haze"),
               std::string::npos);
     apply(state, parse_action("volume off"));
     EXPECT_FALSE(request_of(state, false).volume);

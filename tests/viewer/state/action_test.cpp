@@ -27,16 +27,16 @@ TEST(Script, MistakesAreNamedWithFileAndLine) {
     };
     EXPECT_EQ(message("quit\norbt 1 2"), "b.txt:2: no action 'orbt'; did you mean orbit?");
     EXPECT_EQ(message("orbit 1"), "b.txt:1: expected orbit x y");
-    EXPECT_NE(message("orbit 1 2 3").find("'3' is one too many"), std::string::npos);
-    EXPECT_NE(message("frame one").find("'one' is no number"), std::string::npos);
-    EXPECT_NE(message("drag 1 2").find("'1' is no point"), std::string::npos);
+    EXPECT_NE(message("orbit 1 2 3").find("unexpected parameter '3'"), std::string::npos);
+    EXPECT_NE(message("frame one").find("'one' is not a number"), std::string::npos);
+    EXPECT_NE(message("drag 1 2").find("'1' is not a point"), std::string::npos);
     EXPECT_NE(message("loop maybe").find("expected loop on|off"), std::string::npos);
-    EXPECT_NE(message("wait forever").find("no number"), std::string::npos);
+    EXPECT_NE(message("wait forever").find("not a number"), std::string::npos);
     EXPECT_NE(message("wait samples").find("wait samples N"), std::string::npos);
     EXPECT_NE(message("wait -1").find("negative"), std::string::npos);
     EXPECT_NE(message("open \"a").find("quote"), std::string::npos);
-    EXPECT_NE(message("frame nan").find("no number"), std::string::npos);
-    EXPECT_NE(message("frame 1e300").find("no number"), std::string::npos);
+    EXPECT_NE(message("frame nan").find("not a number"), std::string::npos);
+    EXPECT_NE(message("frame 1e300").find("not a number"), std::string::npos);
 }
 
 TEST(Script, EveryVerbIsListedOnce) {

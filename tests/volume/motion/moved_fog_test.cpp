@@ -176,7 +176,8 @@ TEST(VelocityGrids, MayBeThreeOfNumbers) {
         ASSERT_TRUE(LocalVelocity(read_field(grids, names), dmat4(1)).at(vec3(1.5f), v));
         expect_near(v, vec3(-2, -4, -6), 1e-3f);
     }
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_field(grids, {"vel.x"}); }), HasSubstr("one number a voxel"));
+    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_field(grids, {"vel.x"}); }),
+                HasSubstr("one number per voxel"));
 }
 
 TEST(VelocityGrids, WhatIsNotFiniteIsSetTo0AndSaid) {
@@ -187,7 +188,7 @@ TEST(VelocityGrids, WhatIsNotFiniteIsSetTo0AndSaid) {
     ValueMap map;
     map.clamp = {-20, 20};
     const VelocityField field = read_field({grid}, {"vel"}, &report, map);
-    EXPECT_THAT(report.summary(), HasSubstr("grid \"vel\": 2 voxels that are not finite set to 0"));
+    EXPECT_THAT(report.summary(), HasSubstr("grid \"vel\": 2 non-finite voxels set to 0"));
     EXPECT_LE(field.fastest, std::sqrt(3.0f) * 20);
     vec3 v;
     ASSERT_TRUE(LocalVelocity(field, dmat4(1)).at(vec3(3), v));

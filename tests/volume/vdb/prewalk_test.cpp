@@ -141,9 +141,9 @@ TEST_P(Hostile, Offsets) {
     for (const size_t place : {at.offsets, at.offsets + 8, at.offsets + 16})
         for (const int64_t offset : {int64_t{-1}, int64_t{0}, int64_t{1} << 40, INT64_MAX, INT64_MIN})
             EXPECT_EQ(refusal(patched(good, place, offset)).code, ExitCode::refused) << place << ' ' << offset;
-    EXPECT_REFUSED(patched(good, at.offsets + 16, static_cast<int64_t>(good.size() + 1)), "is cut");
+    EXPECT_REFUSED(patched(good, at.offsets + 16, static_cast<int64_t>(good.size() + 1)), "is truncated");
     const auto here = static_cast<int64_t>(at.tree - 1);
-    EXPECT_REFUSED(patched(patched(good, at.offsets + 8, here), at.offsets + 16, here), "passes its end");
+    EXPECT_REFUSED(patched(patched(good, at.offsets + 8, here), at.offsets + 16, here), "extends past its end");
 }
 
 TEST_P(Hostile, CountsOfTheTree) {
@@ -168,7 +168,7 @@ TEST_P(Hostile, PlacesOfRootNodes) {
     EXPECT_REFUSED(patched(bytes, key + 8, 8192), "not in order");
     two.tiles = {{ivec3(0, 0, 8192), 3, 1.0f}};
     const std::string tiled = authored({two}, GetParam());
-    EXPECT_REFUSED(patched(tiled, dissect(tiled).key + 8, 0), "share a place"); // tiles come first
+    EXPECT_REFUSED(patched(tiled, dissect(tiled).key + 8, 0), "duplicate root node"); // tiles come first
 }
 
 TEST_P(Hostile, NodesThatContradictThemselves) {
@@ -208,7 +208,7 @@ TEST(Prewalk, BloscHeaders) {
         ASSERT_GT(value_of<int64_t>(good, chunk), 16);
         for (const size_t field : {4, 8, 12}) // plain size, block size, packed size
             for (const uint32_t size : {0u, 1u << 20, 0xffffffffu})
-                EXPECT_REFUSED(patched(good, chunk + 8 + field, size), "lies about its size");
+                EXPECT_REFUSED(patched(good, chunk + 8 + field, size), "has the wrong size");
         for (const uint8_t flags : {0x02, 0x08, 0xff})
             EXPECT_EQ(refusal(patched(good, chunk + 8 + 2, flags)).code, ExitCode::refused);
     }
@@ -220,9 +220,9 @@ TEST(Prewalk, Transforms) {
     const double nan = std::nan(""), infinite = HUGE_VAL;
     for (const double value : {nan, infinite, -infinite}) EXPECT_REFUSED(patched(good, scale, value), "not finite");
     EXPECT_REFUSED(patched(good, scale, 0.0), "singular");
-    EXPECT_REFUSED(patched(good, scale, 0.75), "contradicts itself");       // the scale alone
-    EXPECT_REFUSED(patched(good, scale + 48, nan), "contradicts itself");   // what is derived from it alone
-    EXPECT_REFUSED(patched(good, dissect(good).map + 4, 'X'), "not known"); // the kind of map
+    EXPECT_REFUSED(patched(good, scale, 0.75), "is inconsistent");           // the scale alone
+    EXPECT_REFUSED(patched(good, scale + 48, nan), "is inconsistent");       // what is derived from it alone
+    EXPECT_REFUSED(patched(good, dissect(good).map + 4, 'X'), "is unknown"); // the kind of map
 
     AuthoredGrid sheared = one_leaf();
     sheared.index_to_world[1][0] = 0.25;
@@ -245,7 +245,7 @@ TEST(Prewalk, DelayedLoadMetadataIsNotBelieved) {
     const SparseVolume plain = read_vdb(scratch.put("a.vdb", good));
     const SparseVolume volume = read_vdb(scratch.put("b.vdb", patched(patched(good, size + 4, ~0u), size + 8, ~0u)));
     EXPECT_EQ(value_at(volume, ivec3(3)), value_at(plain, ivec3(3)));
-    EXPECT_REFUSED(patched(good, size, ~0u), "is cut");
+    EXPECT_REFUSED(patched(good, size, ~0u), "is truncated");
 }
 
 TEST(Prewalk, HalfIsToldTwice) {
@@ -271,8 +271,8 @@ TEST(Prewalk, InstanceOfNothing) {
     std::string bytes = authored({first, second});
     const size_t parent = bytes.rfind("density", bytes.size());
     ASSERT_NE(parent, std::string::npos);
-    EXPECT_REFUSED(bytes.replace(bytes.find("density", bytes.find("copy")), 7, "densitx"), "that is not there");
-    EXPECT_REFUSED(bytes.replace(bytes.find("densitx"), 7, std::string("copy\0\0\0", 7)), "that is not there");
+    EXPECT_REFUSED(bytes.replace(bytes.find("density", bytes.find("copy")), 7, "densitx"), "that is missing");
+    EXPECT_REFUSED(bytes.replace(bytes.find("densitx"), 7, std::string("copy\0\0\0", 7)), "that is missing");
 }
 
 TEST(Prewalk, NamesCannotBreakTheMessage) {

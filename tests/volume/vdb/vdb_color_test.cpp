@@ -64,7 +64,7 @@ TEST(VdbColor, BackgroundIsNoColorAndValuesAreMended) {
     EXPECT_EQ(value_at(color.channels[0], {1, 2, 5}), 0);
     EXPECT_EQ(value_at(color.there, {1, 2, 5}), 0);
     EXPECT_THAT(report.summary(), HasSubstr("1 negative voxels set to 0"));
-    EXPECT_THAT(report.summary(), HasSubstr("1 voxels above 1 set to it"));
+    EXPECT_THAT(report.summary(), HasSubstr("1 voxels above 1 clamped to it"));
 }
 
 TEST(VdbColor, ThreeGridsOfNumbersAreOneColor) {
@@ -79,7 +79,7 @@ TEST(VdbColor, ThreeGridsOfNumbersAreOneColor) {
             EXPECT_EQ(value_at(color.channels[static_cast<size_t>(c)], {0, 0, 0}), 0.25f * (c + 1));
     }
     EXPECT_EQ(color_of(bytes, {"color.y"}).channels.size(), 1u);
-    EXPECT_THAT(refused(bytes, {"Cd"}), HasSubstr("has no grid \"Cd\", it holds color.x (float)"));
+    EXPECT_THAT(refused(bytes, {"Cd"}), HasSubstr("has no grid \"Cd\"; it has color.x (float)"));
     EXPECT_THAT(refused(authored({grid_of("flags", "int32", {{{0, 0, 0}, 1}})}), {"flags"}),
                 HasSubstr("holds int32 values, not a color per voxel"));
 }
@@ -97,7 +97,7 @@ TEST(VdbMap, ValuesAreMappedBeforeTheyAreCleaned) {
     EXPECT_EQ(value_at(volume, {0, 0, 2}), 0);
     EXPECT_EQ(value_at(volume, {0, 0, 3}), 65504);
     EXPECT_EQ(value_at(volume, {0, 0, 5}), 0) << "no voxel of the grid";
-    EXPECT_THAT(report.summary(), HasSubstr("1 voxels that are not finite set to 0, 1 voxels above 65504 set to it"));
+    EXPECT_THAT(report.summary(), HasSubstr("1 non-finite voxels set to 0, 1 voxels above 65504 clamped to it"));
 }
 
 // A ball of radius 6 with a narrow band of 3 voxels, and its inside as inactive voxels.
@@ -131,7 +131,7 @@ TEST(VdbLevelSet, BecomesFogOfAWidthWithinItsNarrowBand) {
 
     map.width = 3.5f;
     EXPECT_THAT(error_text(ExitCode::refused, [&] { read_vdb(file, "surface", map, infinity, nullptr); }),
-                HasSubstr("its narrow band is 3 wide, in the file's units: a \"width\" of 3.5 passes it"));
+                HasSubstr("its narrow band has a half width of 3, in the file's units; a \"width\" of 3.5 exceeds it"));
     EXPECT_THAT(error_text(ExitCode::refused, [&] { read_vdb(file, "surface"); }), HasSubstr("\"width\""));
     AuthoredGrid fog_volume = grid_of("density", "float", {{{0, 0, 0}, 1.0f}});
     fog_volume.grid_class = "fog volume";

@@ -214,8 +214,9 @@ TEST(VdbCorpus, ActiveVoxelsOfNothing) {
 
 TEST(VdbCorpus, WhatIsNoVolume) {
     EXPECT_THAT(error_of([&] { read(vdb("malformed/git-lfs-pointer.vdb")); }).what(), HasSubstr("git lfs pull"));
-    EXPECT_THAT(error_of([&] { read(vdb("nanovdb/teapot_cloud_start.nvdb")); }).what(), HasSubstr("is cut"));
-    EXPECT_THAT(error_of([&] { read(vdb("malformed/oiio-189fe477e/truncated.vdb")); }).what(), HasSubstr("is cut"));
+    EXPECT_THAT(error_of([&] { read(vdb("nanovdb/teapot_cloud_start.nvdb")); }).what(), HasSubstr("is truncated"));
+    EXPECT_THAT(error_of([&] { read(vdb("malformed/oiio-189fe477e/truncated.vdb")); }).what(),
+                HasSubstr("is truncated"));
 }
 
 // What was read, written and read again is the same fog.

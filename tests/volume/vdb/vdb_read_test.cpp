@@ -257,7 +257,7 @@ TEST(VdbRead, AnotherQuantityIsTakenByNameOnly) {
     }
     for (const char* name : {"temperature", "Heat", "flames", "vel.x"})
         EXPECT_THAT(refusal(authored({small(name)})).what(),
-                    HasSubstr("is not called a density; if it is the fog, name it as \"grid\""));
+                    HasSubstr("is not named as a density; to use it as fog, set \"grid\" to its name"));
 }
 
 TEST(VdbRead, WhatIsNoDensityIsRefused) {
@@ -378,7 +378,7 @@ TEST(VdbRead, WhatIsNoVolume) {
     EXPECT_THAT(refusal("version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n").what(),
                 HasSubstr("git lfs pull"));
     EXPECT_THAT(refusal("").what(), HasSubstr("is neither an OpenVDB"));
-    EXPECT_THAT(refusal(std::string("\x20\x42\x44\x56\0\0\0\0", 8)).what(), HasSubstr("is cut"));
+    EXPECT_THAT(refusal(std::string("\x20\x42\x44\x56\0\0\0\0", 8)).what(), HasSubstr("is truncated"));
 }
 }
 }

@@ -41,7 +41,7 @@ uint32_t compression_of(nanovdb::io::Codec codec, const ByteCursor& file) {
     using enum nanovdb::io::Codec;
     if (codec == ZIP) return vdb_zip;
     if (codec == BLOSC) return vdb_blosc;
-    if (codec != NONE) file.complain("its compression is not known: " + std::to_string(static_cast<int>(codec)));
+    if (codec != NONE) file.complain("its compression is unknown: " + std::to_string(static_cast<int>(codec)));
     return 0;
 }
 
@@ -86,14 +86,14 @@ void unpack(ByteCursor& file, const VdbGridEntry& grid, char* to, uint64_t size)
     file.seek(grid.tree_begin, "the grid");
     if (grid.compression == 0) return file.read(to, size, "the grid");
     for (uint64_t made = 0; made < size;) {
-        if (grid.tree_end - file.position() < sizeof(uint64_t)) file.complain("its packed bytes end too early");
-        const auto packed_size = file.value<uint64_t>("the length of packed bytes");
+        if (grid.tree_end - file.position() < sizeof(uint64_t)) file.complain("its compressed data ends early");
+        const auto packed_size = file.value<uint64_t>("the length of compressed data");
         if (packed_size == 0 || packed_size > grid.tree_end - file.position())
-            file.complain("packed bytes have a length of " + std::to_string(packed_size));
-        const std::string packed = file.bytes(packed_size, "packed bytes");
+            file.complain("compressed data has an invalid length of " + std::to_string(packed_size));
+        const std::string packed = file.bytes(packed_size, "compressed data");
         const auto unpack_chunk = grid.compression == vdb_zip ? unpack_zip : unpack_blosc;
         const uint64_t more = unpack_chunk(packed, to + made, size - made, file);
-        if (more == 0) file.complain("packed bytes hold nothing");
+        if (more == 0) file.complain("a block of compressed data is empty");
         made += more;
     }
 }
@@ -109,7 +109,7 @@ dmat4 matrix_of(const nanovdb::Map& map) {
 
 void check_version(const nanovdb::Version& version, const ByteCursor& file) {
     if (version.getMajor() == readable_version) return;
-    file.complain(formatted("is NanoVDB %u.%u; versions %u can be read", version.getMajor(), version.getMinor(),
+    file.complain(formatted("is NanoVDB %u.%u; only version %u is supported", version.getMajor(), version.getMinor(),
                             readable_version));
 }
 
@@ -117,10 +117,10 @@ void check_version(const nanovdb::Version& version, const ByteCursor& file) {
 void read_head(ByteCursor& file, const nanovdb::io::MetaData& announced, VdbGridEntry& grid) {
     nanovdb::GridData head;
     unpack(file, grid, reinterpret_cast<char*>(&head), sizeof head);
-    if (!has_magic(&head)) file.complain("its head is damaged");
+    if (!has_magic(&head)) file.complain("its header is damaged");
     check_version(head.mVersion, file);
     if (head.mGridSize != grid.nano_bytes || head.mGridType != announced.gridType)
-        file.complain("its head contradicts what the file announces");
+        file.complain("its header contradicts the file's description of it");
     grid.grid_class = class_name(head.mGridClass);
     grid.index_to_world = matrix_of(head.mMap);
     grid.transform_problem = matrix_problem(grid.index_to_world);
@@ -130,7 +130,7 @@ VdbGridEntry read_announcement(ByteCursor& file, nanovdb::io::MetaData& announce
     file.read(&announced, sizeof announced, "the description of a grid");
     VdbGridEntry grid;
     if (announced.nameSize > max_name)
-        file.complain("a grid's name has a length of " + std::to_string(announced.nameSize));
+        file.complain("a grid's name has an invalid length of " + std::to_string(announced.nameSize));
     const std::string name = file.bytes(announced.nameSize, "the name of a grid");
     grid.name = grid.unique_name = name.substr(0, name.find('\0'));
     grid.type = type_name(announced.gridType);
@@ -145,12 +145,12 @@ VdbGridEntry read_announcement(ByteCursor& file, nanovdb::io::MetaData& announce
 // Reads a file segment: its header, the grid descriptions and the grids' headers.
 void read_segment(ByteCursor& file, VdbDirectory& directory) {
     const auto header = file.value<nanovdb::io::Header>("the header");
-    if (!has_magic(&header)) file.complain("is damaged: no grids begin here");
+    if (!has_magic(&header)) file.complain("is damaged: no grids start here");
     check_version(header.version, file);
     directory.library_major = header.version.getMajor(), directory.library_minor = header.version.getMinor();
     const uint32_t compression = compression_of(header.codec, file);
     if (header.gridCount == 0 || directory.grids.size() + header.gridCount > max_grids)
-        file.complain("announces " + std::to_string(header.gridCount) + " grids");
+        file.complain("claims " + std::to_string(header.gridCount) + " grids");
 
     std::vector<nanovdb::io::MetaData> announced(header.gridCount);
     const size_t first = directory.grids.size();
@@ -162,9 +162,10 @@ void read_segment(ByteCursor& file, VdbDirectory& directory) {
         file.where = label(file, grid);
         grid.tree_begin = file.position();
         const uint64_t size = announced[n].fileSize, most = compression ? size * max_expansion : size;
-        if (size > file.left()) file.complain("is cut: the grid takes " + std::to_string(size) + " bytes");
+        if (size > file.left()) file.complain("is truncated: the grid takes " + std::to_string(size) + " bytes");
         if (grid.nano_bytes < sizeof(nanovdb::GridData) || grid.nano_bytes > most || size > (uint64_t{1} << 50))
-            file.complain("announces " + std::to_string(grid.nano_bytes) + " bytes in " + std::to_string(size));
+            file.complain("claims a grid of " + std::to_string(grid.nano_bytes) + " bytes stored in " +
+                          std::to_string(size));
         grid.tree_end = grid.tree_begin + size;
         read_head(file, announced[n], grid);
         file.seek(grid.tree_end, "the end of the grid");

@@ -50,7 +50,7 @@ private:
     template<class Node> const Node& node(uint64_t from, int64_t step) const {
         const uint64_t at = from + static_cast<uint64_t>(step);
         if (at % NANOVDB_DATA_ALIGNMENT || at > bytes_.size() || bytes_.size() - at < sizeof(Node))
-            refuse(where_, "is damaged: a node points outside of the grid");
+            refuse(where_, "is damaged: a node points outside the grid");
         return *reinterpret_cast<const Node*>(bytes_.data() + at);
     }
     template<class Node, class From> const Node& child(const From& from, int64_t step) const {
@@ -76,14 +76,14 @@ private:
         result_.background = component_of(root.mBackground, component_);
         const uint64_t after = bytes_.size() - offset_of(root) - sizeof(Root);
         if (root.mTableSize > after / sizeof(typename Root::Tile))
-            refuse(where_, "is damaged: announces " + std::to_string(root.mTableSize) + " root nodes");
+            refuse(where_, "is damaged: claims " + std::to_string(root.mTableSize) + " root nodes");
         for (uint32_t n = 0; n < root.mTableSize; ++n) {
             const typename Root::Tile& tile = *root.tile(n);
             const auto origin = tile.origin();
             const ivec3 low(origin[0], origin[1], origin[2]);
             for (int axis = 0; axis < 3; ++axis)
                 if (low[axis] < -largest_coordinate || low[axis] > largest_coordinate - 4096)
-                    refuse(where_, "a root node lies further out than 2^24 voxels");
+                    refuse(where_, "a root node lies more than 2^24 voxels from the origin");
             result_.root_nodes.push_back(low);
             if (tile.child != 0) {
                 read_upper(child<Upper>(root, tile.child), low);
@@ -98,7 +98,7 @@ private:
     void check_places() const {
         std::vector<ivec3> places = result_.root_nodes;
         std::ranges::sort(places, {}, [](ivec3 p) { return std::tuple(p.x, p.y, p.z); });
-        if (std::ranges::adjacent_find(places) != places.end()) refuse(where_, "two root nodes share a place");
+        if (std::ranges::adjacent_find(places) != places.end()) refuse(where_, "duplicate root node");
     }
 
     // Visits every child of an internal node and adds its tiles.
@@ -127,7 +127,7 @@ private:
         count<Leaf>(counts_.leaves);
         if constexpr (std::is_same_v<Build, nanovdb::FpN>) { // variable size: values follow the node
             if (leaf.mFlags >> 5 > 4 || bytes_.size() - offset_of(leaf) < leaf.memUsage())
-                refuse(where_, "is damaged: the values of a leaf lie outside of the grid");
+                refuse(where_, "is damaged: the values of a leaf lie outside the grid");
         }
         leaves_.emplace_back(&leaf, low);
     }
@@ -182,7 +182,7 @@ DecodedTree decode_nano_tree(std::string_view bytes, const VdbGridEntry& grid, V
     case FpN:
         return as(std::type_identity<nanovdb::FpN>());
     default:
-        refuse(where, "holds " + printable(grid.type, 40) + " values");
+        refuse(where, "has values of an unsupported type: " + printable(grid.type, 40));
     }
 }
 }

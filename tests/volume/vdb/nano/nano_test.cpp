@@ -114,11 +114,11 @@ TEST(Nano, LevelSetsNeedAWidth) {
 TEST(Nano, DamageIsRefusedByName) {
     const std::string whole = nano_authored({noisy_ball(ivec3(0), 6)});
     const size_t grid = whole.size() - 672; // not more than a file's head is before it
-    EXPECT_THAT(refusal(whole.substr(0, 100)).what(), HasSubstr("is cut"));
-    EXPECT_THAT(refusal(whole.substr(0, whole.size() - 1)).what(), HasSubstr("is cut"));
+    EXPECT_THAT(refusal(whole.substr(0, 100)).what(), HasSubstr("is truncated"));
+    EXPECT_THAT(refusal(whole.substr(0, whole.size() - 1)).what(), HasSubstr("is truncated"));
     EXPECT_THAT(refusal(patched(whole, 8, uint32_t{31u << 21 | 5u << 10})).what(), HasSubstr("NanoVDB 31.5"));
-    EXPECT_THAT(refusal(patched(whole, 14, uint16_t{7})).what(), HasSubstr("compression is not known: 7"));
-    EXPECT_THAT(refusal(patched(whole, 16, uint64_t{1} << 40)).what(), HasSubstr("announces"));
+    EXPECT_THAT(refusal(patched(whole, 14, uint16_t{7})).what(), HasSubstr("compression is unknown: 7"));
+    EXPECT_THAT(refusal(patched(whole, 16, uint64_t{1} << 40)).what(), HasSubstr("claims"));
     EXPECT_THAT(refusal("NanoVDB0 and so on, for a while").what(), HasSubstr("is NanoVDB"));
     EXPECT_GT(grid, 0u);
 
