@@ -7,9 +7,9 @@ import subprocess
 import sys
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "cli"))
-from exr import read_channels
-from program import SOURCE, ProgramTest, run
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from cli.exr import read_channels
+from cli.program import SOURCE, ProgramTest, run
 
 OPENJD = shutil.which("openjd", path=f"{SOURCE / 'build/openjd/bin'}:{os.environ['PATH']}")
 

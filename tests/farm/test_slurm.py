@@ -8,9 +8,9 @@ import sys
 import time
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "cli"))
-from exr import read_channels
-from program import SOURCE, TYNDALL, ProgramTest, run
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1]))
+from cli.exr import read_channels
+from cli.program import SOURCE, TYNDALL, ProgramTest, run
 from slurm_cluster import Cluster, missing_programs
 
 NIGHTLY = bool(os.environ.get("TYNDALL_NIGHTLY"))
