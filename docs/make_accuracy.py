@@ -1,8 +1,10 @@
-"""Draws what a run of the proving ground found: the error asked for against the error achieved, one dot a promise.
+"""Draws what runs of the proving ground found: the target error against the error achieved, one dot per promise. Writes
+the figures beside the drawing, as CSV.
 
     tests/proving/run.py --seeds 5001-5200 -o out/proving
-    docs/make_accuracy.py out/proving/proving.json docs/images/accuracy.svg
+    docs/make_accuracy.py docs/images/accuracy.svg out/proving/proving.json [MORE.json ...]
 """
+import csv
 import json
 import math
 import pathlib
@@ -52,9 +54,23 @@ def drawing(rows):
     return "\n".join([*parts, "</svg>", ""])
 
 
+COLUMNS = {"seed": "", "family": "", "redrawn": "", "asked": "g", "mode": "", "chosen": "", "exit": "", "promised": ".4f", "bound": ".4f",
+           "achieved": ".4f", "samples": "", "seconds": ".2f", "processor": ".2f", "forecast": ".2f", "took": ".2f"}
+
+
+def table(rows):
+    """One row per promise: what was asked for, stated and achieved, and the time it took."""
+    for row in sorted(rows, key=lambda row: (row["seed"], -row["asked"], row["mode"] != "march")):
+        yield ["" if row.get(name) is None else format(row[name], form) for name, form in COLUMNS.items()]
+
+
 def main():
-    rows = json.loads(pathlib.Path(sys.argv[1]).read_text())
-    pathlib.Path(sys.argv[2]).write_text(drawing([row for row in rows if row.get("achieved") is not None]))
+    drawing_file = pathlib.Path(sys.argv[1])
+    rows = [row for file in sys.argv[2:] for row in json.loads(pathlib.Path(file).read_text())
+            if row.get("achieved") is not None]
+    drawing_file.write_text(drawing(rows))
+    with open(drawing_file.with_suffix(".csv"), "w", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([COLUMNS, *table(rows)])
 
 
 if __name__ == "__main__":
