@@ -8,6 +8,10 @@
 #include "viewer/editing/json_text.h"
 #include "viewer/editing/key_place.h"
 
+#include <algorithm>
+#include <utility>
+#include <vector>
+
 namespace tyndall {
 namespace {
 bool is_grey(vec3 value) { return value.x == value.y && value.y == value.z; }
