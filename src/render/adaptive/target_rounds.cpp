@@ -10,6 +10,7 @@ namespace {
 // Most samples per pixel in a first round: an image that needs more than sixteen times as many has pixels with far more
 // variance than others, which show by then.
 constexpr double max_first_samples = 64;
+constexpr double early_share = 0.2; // of an image, for the first round of one that is checked early
 
 // Total samples per pixel to reach `target`, given the noise after `samples`: variance falls as 1 / n. A fiftieth more,
 // so that the bound is usually met at the first try.
@@ -84,7 +85,7 @@ bool begin_allotment(TargetRounds& rounds, const Layers& layers, FrameStats& sta
     double growth = 0;
     for (size_t i = 0; i < taken.pixels.size(); ++i)
         growth = std::max(growth, double{allotment.samples.pixels[i]} / taken.pixels[i]);
-    rounds.first_part = rounds.allotment || growth > 16 ? 0.4 : 1;
+    rounds.first_part = rounds.checks_early() ? early_share : rounds.allotment || growth > 16 ? 0.4 : 1;
     rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
     return true;
 }
@@ -168,6 +169,7 @@ double begin_with_scout(TargetRounds& rounds, Layers& result, FrameStats& stats)
             needed = scout_samples * std::pow(stats.noise->bound / rounds.noise_target(), 2 / rounds.power());
         if (rounds.goal.seconds > 0) needed = std::min(needed, rounds.left() / rounds.work_seconds);
         rounds.done = 0, rounds.freedom = 0, rounds.expected = needed;
+        if (rounds.checks_early()) needed *= early_share;
         return std::clamp(std::ceil(needed / batches) * batches, batches, max_first_samples);
     }
     return next_round(rounds, stats);

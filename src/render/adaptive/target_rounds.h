@@ -17,6 +17,7 @@ struct TargetRounds {
     View view; // as requested; samples go where variance is measured, not by rule to lamps and edges
     Goal& goal;
     double start = 0;             // when the goal's time began
+    bool is_timed = false;        // by the goal as asked, not by a forecast
     std::optional<Choice> choice; // if anything was measured beforehand
     std::optional<Allotment> allotment{};
     double work_seconds = 0; // per unit of work: from the last round, or as measured beforehand
@@ -43,6 +44,10 @@ struct TargetRounds {
     Image<float> samples_taken(const Layers& layers) const {
         return allotment ? samples_in(*allotment, done, unit(), goes_on()) : samples_alike(layers, done);
     }
+
+    // Whether the integrator is checked after the first round: a technique that was preferred to the main one for its
+    // speed loses all of it if it misses the target.
+    bool checks_early() const { return choice && !is_timed && has_rivals(*choice, mode); }
 
     double noise_target() const { return choice ? tyndall::noise_target(*choice, goal.error) : goal.error; }
 

@@ -9,15 +9,17 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 namespace tyndall {
 namespace {
 constexpr double max_check_share = 0.2; // of the time limit
 constexpr double longest_seconds = 600; // limit if none is given and the error is far off
 constexpr double soon = 2;              // seconds: a forecast waits for a round as short as this
+constexpr int max_rounds = std::numeric_limits<int>::max();
 
 TargetRounds rounds_of(const Mode& mode, const View& view, Goal& goal) {
-    TargetRounds rounds{mode, view, goal, goal.clock(), {}};
+    TargetRounds rounds{mode, view, goal, goal.clock(), goal.seconds > 0, {}};
     rounds.view.lamp_samples = rounds.view.edge_samples = 1;
     return rounds;
 }
@@ -104,14 +106,15 @@ void make_forecast(double more, TargetRounds& rounds, const FrameOptions& option
     if (options.forecast && !as_before) options.forecast(seconds);
 }
 
-// Renders rounds until the noise meets the goal or time is up. `round` is counted across restarts.
-void render_rounds(TargetRounds& rounds, const Rendering& rendering, double work, Layers& result, FrameStats& stats,
-                   int& round) {
+// Renders rounds until the noise meets the goal or time is up, at most `most` of them; returns the work of the next
+// one, 0 if none is to follow. `round` is counted across restarts.
+double render_rounds(TargetRounds& rounds, const Rendering& rendering, double work, int most, Layers& result,
+                     FrameStats& stats, int& round) {
     const double pixels = pixel_count(rounds.view);
     const auto& progress = rendering.options.progress;
     double begun = std::min(1.0, rounds.done / rounds.expected), rays = stats.samples * pixels; // of rounds that count
     if (rounds.done == 0) rays = 0;
-    for (; work > 0; ++round) {
+    for (int rendered = 0; work > 0 && rendered < most; ++rendered) {
         std::optional<AllottedPart> part;
         if (rounds.done == 0) rounds.sequence = round;
         if (rounds.allotment)
@@ -127,7 +130,7 @@ void render_rounds(TargetRounds& rounds, const Rendering& rendering, double work
         Layers layers =
             render_frame(rendering.mode, view, rendering.snapshot, rendering.settings, options, round_stats);
         rounds.work_seconds = (rounds.goal.clock() - start) / work;
-        rounds.freedom += view.batches - 1, begun = reached;
+        rounds.freedom += view.batches - 1, begun = reached, ++round;
         if (rounds.done == 0)
             result = std::move(layers);
         else if (part)
@@ -139,13 +142,24 @@ void render_rounds(TargetRounds& rounds, const Rendering& rendering, double work
         stats.samples = static_cast<int>(std::lround(rays / pixels));
 
         // Stop after an image of one sample per pixel: it has no variance to continue from.
-        if (judge(rounds, result, stats) || rays >= max_target_samples * pixels || rounds.freedom == 0) return;
+        if (judge(rounds, result, stats) || rays >= max_target_samples * pixels || rounds.freedom == 0) return 0;
         if (begin_allotment(rounds, result, stats)) rays = 0;
         work = next_round(rounds, stats);
         if (work == 0 || rounds.goal.error == 0) continue;
         make_forecast((rounds.expected - rounds.done) * rounds.work_seconds, rounds, rendering.options, stats);
         work = next_round(rounds, stats); // within the limit that the forecast may have set
     }
+    return work;
+}
+
+// What is checked: the finished image, or one that its first rounds show, with the noise it is meant to reach.
+CheckedPicture picture_of(const TargetRounds& rounds, const Layers& image, const FrameStats& stats, bool is_done,
+                          bool may_begin_anew) {
+    const double taken = stats.samples;
+    if (is_done) return {image, *stats.noise, taken, taken, may_begin_anew};
+    const double bound = rounds.noise_target();
+    const double unit = rounds.allotment ? rounds.allotment->rays / pixel_count(rounds.view) : 1;
+    return {image, {bound, bound, bound}, unit * rounds.expected, unit * rounds.done, may_begin_anew};
 }
 }
 
@@ -154,7 +168,6 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     assert(error_can_be_told(mode) && (goal.error > 0 || goal.seconds > 0));
     if (!goal.clock) goal.clock = steady_seconds;
     const double start = goal.clock();
-    const bool is_timed = goal.seconds > 0;
     const std::optional<OrdersError> orders = orders_beside(mode, view, snapshot, settings, goal, options);
     TargetRounds rounds = rounds_of(mode, view, goal);
     rounds.start = start;
@@ -177,26 +190,28 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
             const bool wait = ahead < infinity && work * rounds.work_seconds < soon && stats.forecast_seconds == 0;
             if (!wait) make_forecast(ahead, rounds, options, stats);
         }
-        render_rounds(rounds, rendering, work, result, stats, round);
+        const bool early = rounds.checks_early();
+        const bool is_done = render_rounds(rounds, rendering, work, early ? 1 : max_rounds, result, stats, round) == 0;
         if (!has_integrator(mode) || (goal.seconds > 0 && rounds.check_seconds == 0)) break;
 
         const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;
         Goal asked = goal;
-        if (!is_timed) asked.seconds = 0; // no limit from the forecast: a finer candidate may take less time
-        const double samples = stats.samples;
-        const Choice after = checked(*rounds.choice, {result, *stats.noise, samples, samples, check < max_checks},
-                                     until, mode, rounds.view, snapshot, settings, asked, check, options);
+        if (!rounds.is_timed) asked.seconds = 0; // no limit from the forecast: a finer candidate may take less time
+        const CheckedPicture picture = picture_of(rounds, result, stats, is_done, check < max_checks);
+        const Choice after =
+            checked(*rounds.choice, picture, until, mode, rounds.view, snapshot, settings, asked, check, options);
         if (after.candidate.name != rounds.choice->candidate.name) {
             begin(after, rounds, rendering, stats);
             continue;
         }
         rounds.choice = after;
         note_integrator(after, stats);
-        const double times = after.times_to(goal.error, after.measured.integrator.bound, *stats.noise);
-        const double left = (times - 1) * samples * after.measured.sample_work;
+        const double times = after.times_to(goal.error, after.measured.integrator.bound, picture.noise);
+        const double left = (times * picture.samples - picture.done) * after.measured.sample_work;
         const bool worth = !has_rivals(after, mode) || left < goal.other_work;
-        if (goal.error > 0 && worth && rounds.freedom > 0 && !judge(rounds, result, stats))
-            render_rounds(rounds, rendering, next_round(rounds, stats), result, stats, round);
+        const bool lacks = !is_done || (rounds.freedom > 0 && !judge(rounds, result, stats));
+        if (goal.error > 0 && worth && lacks)
+            render_rounds(rounds, rendering, next_round(rounds, stats), max_rounds, result, stats, round);
         break;
     }
     stats.orders = orders, stats.moments_error = moments;

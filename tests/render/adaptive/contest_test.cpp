@@ -3,6 +3,8 @@
 
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "render/adaptive/to_target.h"
+#include "render/frame/noise_fixtures.h"
 #include "scene/light.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
@@ -17,7 +19,8 @@ const FrameOptions plain{};
 
 struct LitBox {
     View view;
-    Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, Box{vec3(-4), vec3(4)})}, {sun_light({0, -1, -0.2f})});
+    Snapshot snapshot =
+        snapshot_of(std::vector{homogeneous_medium(0.1f, Box{vec3(-4), vec3(4)})}, {sun_light({0, -1, -0.2f})});
     Settings settings = settings_for(Quality::preview);
 
     LitBox() {
@@ -91,5 +94,30 @@ TEST(Contest, AVeryLongForecastGrantsTheOthersNoMoreThanTwentyTimesWhatIsKnown) 
     };
     EXPECT_EQ(measured(0.2 / 20), 1u);
     EXPECT_GT(measured(0.5 / 20), 1u);
+}
+
+// A technique that misses the target costs no more than its first round; one that does not renders all of them.
+TEST(Contest, AModeThatMissesTheTargetIsStoppedEarly) {
+    const LitBox box;
+    Goal goal{0.02, 0, Quality::preview, steady_seconds};
+    Mode wrong = own_mode(prepare_random); // and noisy: .02 takes some 800 samples a pixel
+    wrong.accuracy = main_mode().accuracy, wrong.rungs = main_mode().rungs;
+    Choice choice = choose(main_mode(), box.view, box.snapshot, box.settings, goal, goal.clock(), plain);
+    Scout scout = *make_scout(wrong, box.view, box.snapshot, choice.candidate, plain, goal.clock);
+    scout.mode = &main_mode();
+    choice.scout = std::make_shared<const Scout>(scout);
+    choice.has_integrator = true, choice.is_truth = false;
+    choice.measured.integrator = {}, choice.measured.prepared = nullptr;
+    goal.choice = std::make_shared<const Choice>(choice);
+    const auto rendered = [&](Mode rival) {
+        rival.name = "rival";
+        FrameStats stats;
+        render_to_target(rival, box.view, box.snapshot, box.settings, goal, plain, stats);
+        return stats;
+    };
+    const FrameStats missed = rendered(wrong);
+    EXPECT_GT(missed.integrator->error.error, goal.error);
+    EXPECT_GT(missed.noise->error, goal.error) << "further rounds would be in vain";
+    EXPECT_LE(rendered(main_mode()).error()->bound, goal.error);
 }
 }

@@ -121,7 +121,7 @@ TEST(GoingOn, IsForPicturesWhoseNoiseManyPixelsHold) {
     const Mode march = find_mode("march"), path = own_mode(prepare_random);
     Goal goal{0.05, 0, Quality::preview, {}};
     const auto rounds_with = [&](const Mode& mode, double pixels, int batches) {
-        TargetRounds rounds{mode, batched_view(size, 4, batches), goal, 0, {}};
+        TargetRounds rounds{mode, batched_view(size, 4, batches), goal, 0, false, {}};
         rounds.allotment.emplace();
         rounds.allotment->samples = Image<float>(size / 4, 80.0f), rounds.allotment->pixels = pixels;
         return rounds;
