@@ -88,5 +88,9 @@ inline void make_frame(vec3 axis, vec3& u, vec3& v) {
 
 inline float mean_component(vec3 v) { return v.x + ((v.y - v.x) + (v.z - v.x)) / 3; } // exact if all are equal
 inline float max_component(vec3 v) { return std::max(v.x, std::max(v.y, v.z)); }
+inline double channel_mean(dvec3 v) { return (v.x + v.y + v.z) / 3; }
+
+// Of linear Rec.709.
 inline float luminance(vec3 rgb) { return glm::dot(rgb, vec3(0.2126f, 0.7152f, 0.0722f)); }
+inline double luminance(dvec3 rgb) { return glm::dot(rgb, dvec3(0.2126, 0.7152, 0.0722)); }
 }

@@ -1,6 +1,7 @@
 #include "property_controls.h"
 
 #include "../theme.h"
+#include "base/srgb.h"
 #include "base/text.h"
 #include "panels.h"
 #include "viewer/state/edit_actions.h"
@@ -37,11 +38,6 @@ bool edit_vector(const Property& property, vec3& value) {
     return ImGui::DragFloat3("##value", &value.x, speed, 0, 0, is_degrees(property) ? "%.1f" : "%.2f");
 }
 
-float encoded(float linear) {
-    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f; // sRGB
-}
-float decoded(float code) { return code <= 0.04045f ? code / 12.92f : std::pow((code + 0.055f) / 1.055f, 2.4f); }
-
 // A color patch that opens a picker, and the linear values. For colors brighter than 1 the picker shows and sets their
 // ratio to the largest component.
 bool edit_color(vec3& value) {
@@ -51,10 +47,11 @@ bool edit_color(vec3& value) {
         ImGui::OpenPopup("palette");
     bool changed = false;
     if (ImGui::BeginPopup("palette")) {
-        float codes[3] = {encoded(value.x / bright), encoded(value.y / bright), encoded(value.z / bright)};
+        float codes[3] = {srgb_encoded(value.x / bright), srgb_encoded(value.y / bright),
+                          srgb_encoded(value.z / bright)};
         ImGui::SetNextItemWidth(14 * ImGui::GetFontSize());
         if (ImGui::ColorPicker3("##picker", codes, ImGuiColorEditFlags_NoSidePreview | ImGuiColorEditFlags_NoInputs)) {
-            value = bright * vec3(decoded(codes[0]), decoded(codes[1]), decoded(codes[2]));
+            value = bright * vec3(srgb_decoded(codes[0]), srgb_decoded(codes[1]), srgb_decoded(codes[2]));
             changed = true;
         }
         ImGui::EndPopup();
@@ -130,7 +127,7 @@ bool draw_label(const char* text, bool keyed) {
 
 ImVec4 shown_color(vec3 linear) {
     const vec3 color = linear / std::max(max_component(linear), 1.0f);
-    return {encoded(color.x), encoded(color.y), encoded(color.z), 1};
+    return {srgb_encoded(color.x), srgb_encoded(color.y), srgb_encoded(color.z), 1};
 }
 
 void draw_property(const ViewState& state, const Property& property, size_t index, EditMemory& memory, const Act& act) {

@@ -149,7 +149,7 @@ Image<float> flip_ldr(const Image<vec3>& test, const Image<vec3>& reference, dou
 FlipExposures flip_exposures(const Image<vec3>& reference) {
     std::vector<double> luminances;
     for (const vec3 color : reference.pixels)
-        if (is_finite(color)) luminances.push_back(0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z);
+        if (is_finite(color)) luminances.push_back(luminance(dvec3(color)));
     std::ranges::sort(luminances);
     if (luminances.empty() || !(luminances.back() > 0)) return {};
     double median = luminances[luminances.size() / 2];

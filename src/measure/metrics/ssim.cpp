@@ -1,5 +1,6 @@
 #include "measure/metrics/ssim.h"
 
+#include "base/srgb.h"
 #include "measure/metrics/filter.h"
 #include "measure/metrics/metrics.h"
 #include "measure/metrics/tone.h"
@@ -29,10 +30,7 @@ Image<double> window_products(const Image<double>& a, const Image<double>& b) {
     return window_means(products);
 }
 
-double shown(vec3 color, double gain) {
-    const double luminance = 0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z;
-    return srgb_encoded(aces(gain * luminance));
-}
+double shown(vec3 color, double gain) { return srgb_encoded(aces(gain * luminance(dvec3(color)))); }
 }
 
 Image<double> ssim_map(const Image<double>& test, const Image<double>& reference) {
@@ -53,7 +51,7 @@ Image<double> ssim_map(const Image<double>& test, const Image<double>& reference
 double mean_luminance(const Image<vec3>& image) {
     double sum = 0, count = 0;
     for (const vec3 color : image.pixels)
-        if (is_finite(color)) sum += 0.2126 * color.x + 0.7152 * color.y + 0.0722 * color.z, ++count;
+        if (is_finite(color)) sum += luminance(dvec3(color)), ++count;
     return count > 0 ? sum / count : 0;
 }
 

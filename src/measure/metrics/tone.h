@@ -23,7 +23,4 @@ inline double aces_inverse(double y) {
     const double p = a - c * y, q = b - d * y;
     return (-q + std::sqrt(q * q + 4 * p * e * y)) / (2 * p);
 }
-
-// IEC 61966-2-1, 0..1.
-inline double srgb_encoded(double x) { return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055; }
 }

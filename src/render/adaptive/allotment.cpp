@@ -12,8 +12,6 @@ constexpr int tile_side = 4;
 // missed it.
 constexpr double beside_share = 1.0 / 16, image_share = 1.0 / 256;
 
-double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
-
 double square_of_mean(const Image<vec3>& image) {
     double sum = 0;
     for (const vec3& value : image.pixels) sum += channel_mean(value);

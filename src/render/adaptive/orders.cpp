@@ -22,8 +22,6 @@ constexpr size_t max_tiles = 256, few_tiles = 64, layer_count = 2; // layers: co
 constexpr size_t first_passes = 4, few_passes = 16, max_passes = 64;
 constexpr uint32_t use_orders = 0x0d3e5u;
 
-double channel_mean(dvec3 value) { return (value.x + value.y + value.z) / 3; }
-
 // A tile of the image and its sampled pixels.
 struct SweptTile {
     double weight = 0; // share of the pixels of all sampled tiles

@@ -15,8 +15,6 @@
 namespace tyndall {
 namespace {
 constexpr double confidence = 1.96; // 97.5 % quantile of the normal distribution
-
-double channel_mean(dvec3 value) { return (value.x + value.y + value.z) / 3; }
 }
 
 Sums sums_of(std::span<const vec3> truth, std::span<const vec3> own, size_t layer) {

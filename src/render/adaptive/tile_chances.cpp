@@ -21,8 +21,6 @@ ivec2 corner_of(const TileChances& tiles, int tile) {
     return (tiles.low + ivec2(tile % tiles.size.x, tile / tiles.size.x)) * tile_side;
 }
 
-double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
-
 // Distributes `share` over tiles in proportion to a function of pixels; evenly if that is 0 everywhere.
 template<class Function> void add_share(const Layers& picture, double share, const Function& at, TileChances& tiles) {
     std::vector<double> sums(tiles.chances.size(), 0.0);

@@ -100,8 +100,6 @@ void blend_layers(Layers& layers, const Layers& other, const TileShares& shares)
 namespace {
 constexpr double certain = 1e9; // degrees of freedom of a variance that is known exactly
 
-double channel_mean(vec3 value) { return (double{value.x} + value.y + value.z) / 3; }
-
 double mean_of(const Image<vec3>& image) {
     double sum = 0;
     for (const vec3& value : image.pixels) sum += channel_mean(value);

@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/srgb.h"
 
 #include <array>
 #include <bit>
@@ -31,11 +32,7 @@ private:
     std::array<float, powers * 128 + 2> values_;
 };
 
-// The sRGB curve (IEC 61966-2-1), as codes.
-double encoded(double x) {
-    x = std::min(x, 1.0);
-    return 255 * (x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055);
-}
+double code_of(double linear) { return 255 * srgb_encoded(std::min(linear, 1.0)); }
 
 // AgX (Troy Sobotka 2022): a matrix narrows the gamut, so that pure colors bleed into the other channels when they get
 // bright; a sigmoid maps the logarithm of each channel; a second matrix widens the gamut again. Matrices, polynomial
@@ -61,7 +58,7 @@ double sigmoid(double linear) {
 
 vec3 filmic_codes(vec3 linear) {
     static const Curve curve([](double x) { return std::pow(sigmoid(x), contrast); });
-    static const Curve codes([](double x) { return encoded(std::pow(x, 2.2)); });
+    static const Curve codes([](double x) { return code_of(std::pow(x, 2.2)); });
     const vec3 bent = curve.at(inset * linear);
     return codes.at(outset * glm::mix(vec3(luminance(bent)), bent, saturation));
 }
@@ -79,7 +76,7 @@ const std::vector<std::string>& view_transform_names() {
 }
 
 vec3 display_value(vec3 linear, const Display& display) {
-    static const Curve codes(encoded);
+    static const Curve codes(code_of);
     const vec3 color = cleaned(static_cast<float>(std::exp2(display.exposure)) * linear);
     return display.transform == ViewTransform::filmic ? filmic_codes(color) : codes.at(color);
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/exr/exr_picture.h"
 #include "base/io/file.h"
+#include "base/srgb.h"
 #include "scene/images/radiance_file.h"
 
 #include <algorithm>
@@ -45,13 +46,10 @@ void check_length(std::string_view bytes, std::string_view where) {
     refuse(where, reason == "outofdata" ? "the image is truncated" : "the image is truncated or damaged");
 }
 
-// IEC 61966-2-1.
-float linear(float srgb) { return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f); }
-
 const std::array<float, 256>& linear_table() {
     static const std::array<float, 256> table = [] {
         std::array<float, 256> values;
-        for (int i = 0; i < 256; ++i) values[i] = linear(i / 255.0f);
+        for (int i = 0; i < 256; ++i) values[i] = srgb_decoded(i / 255.0f);
         return values;
     }();
     return table;

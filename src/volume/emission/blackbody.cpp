@@ -23,8 +23,6 @@ template<class Spectrum> dvec3 observed(const Spectrum& spectrum) {
     return sum * step_nm;
 }
 
-double luminance_of(dvec3 rgb) { return dot(rgb, dvec3(0.2126, 0.7152, 0.0722)); }
-
 // XYZ of Planck's law normalized to its maximum, which keeps values in range at any temperature.
 dvec3 relative_xyz(double kelvin) {
     const double highest = planck_radiance(wien / kelvin, kelvin);
@@ -49,7 +47,7 @@ dvec3 rec709_from_xyz(dvec3 xyz) {
 }
 
 dvec3 in_gamut(dvec3 rgb) {
-    const double grey = luminance_of(rgb);
+    const double grey = luminance(rgb);
     const double least = std::min({rgb.x, rgb.y, rgb.z});
     if (least >= 0 || !(grey > 0)) return glm::max(rgb, dvec3(0));
     return glm::max(grey + (rgb - grey) * (grey / (grey - least)), dvec3(0));
@@ -70,7 +68,7 @@ dvec3 blackbody_tint(double kelvin) {
     const dvec3 xyz = relative_xyz(kelvin);
     if (!(xyz.y > 0)) return dvec3(0);
     const dvec3 rgb = in_gamut(rec709_from_xyz(xyz / xyz.y));
-    return rgb / luminance_of(rgb);
+    return rgb / luminance(rgb);
 }
 
 double lowest_in_gamut() {

@@ -1,5 +1,6 @@
 #include "measure/metrics/pictures.h"
 
+#include "base/srgb.h"
 #include "measure/metrics/ssim.h"
 #include "measure/metrics/tone.h"
 

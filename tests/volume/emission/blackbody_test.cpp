@@ -7,8 +7,6 @@
 
 namespace tyndall {
 namespace {
-double luminance_of(dvec3 rgb) { return 0.2126 * rgb.x + 0.7152 * rgb.y + 0.0722 * rgb.z; }
-
 struct Chromaticity {
     double x, y;
 };
@@ -37,7 +35,7 @@ TEST(Blackbody, ChromaticitiesArePublishedOnes) {
 TEST(Blackbody, TintsHaveLuminanceOneAndStayInGamut) {
     for (const double kelvin : {500.0, 1000.0, 1900.0, 3200.0, 6500.0, 40000.0, 100000.0}) {
         const dvec3 tint = blackbody_tint(kelvin);
-        EXPECT_NEAR(luminance_of(tint), 1, 1e-12) << kelvin;
+        EXPECT_NEAR(luminance(tint), 1, 1e-12) << kelvin;
         EXPECT_GE(std::min({tint.x, tint.y, tint.z}), 0) << kelvin;
     }
     EXPECT_GT(blackbody_tint(2000).x, blackbody_tint(3000).x);
@@ -62,7 +60,7 @@ TEST(Blackbody, ColorsAreBroughtIntoGamutAtTheirLuminance) {
     for (const double kelvin : {600.0, 1000.0, 1500.0, 1900.0, 3000.0}) {
         const dvec3 rgb = rec709_from_xyz(blackbody_xyz(kelvin)), shown = in_gamut(rgb);
         EXPECT_GE(std::min({shown.x, shown.y, shown.z}), 0) << kelvin;
-        EXPECT_NEAR(luminance_of(shown), luminance_of(rgb), luminance_of(rgb) * 1e-12) << kelvin;
+        EXPECT_NEAR(luminance(shown), luminance(rgb), luminance(rgb) * 1e-12) << kelvin;
         EXPECT_EQ(shown == rgb, kelvin > lowest_in_gamut()) << kelvin;
     }
     EXPECT_EQ(in_gamut({-1, -1, -1}), dvec3(0));
@@ -75,9 +73,9 @@ TEST(Blackbody, CyclesIsStefanAndBoltzmannTimesAColorOfLuminanceOne) {
     EXPECT_NEAR(hot.x, 0.8262954810, 0.002);
     EXPECT_NEAR(hot.y, 0.9945080502, 0.002);
     EXPECT_NEAR(hot.z, 1.5663077103, 0.004);
-    EXPECT_NEAR(luminance_of(blackbody_color(BlackbodyKind::cycles, 2500)), power * std::pow(2500.0, 4), 1e-4);
-    EXPECT_NEAR(luminance_of(blackbody_color(BlackbodyKind::cycles, 2500, 0.5)),
-                power * (0.5 + 0.5 * std::pow(2500.0, 4)), 1e-4);
+    EXPECT_NEAR(luminance(blackbody_color(BlackbodyKind::cycles, 2500)), power * std::pow(2500.0, 4), 1e-4);
+    EXPECT_NEAR(luminance(blackbody_color(BlackbodyKind::cycles, 2500, 0.5)), power * (0.5 + 0.5 * std::pow(2500.0, 4)),
+                1e-4);
 }
 
 // What Blender 5.0.1's Blackbody node shows: below some 1900 K it cuts the blue off, and keeps red and green.
@@ -98,8 +96,8 @@ TEST(Blackbody, CyclesCutsOffWhatIsBelowZero) {
 TEST(Blackbody, PbrtIsPlanckOverItsMaximum) {
     for (const double kelvin : {1000.0, 2500.0, 6500.0}) {
         const double peak = planck_radiance(2.897771955e-3 / kelvin, kelvin);
-        const double ratio = luminance_of(blackbody_color(BlackbodyKind::kelvin, kelvin)) /
-                             luminance_of(blackbody_color(BlackbodyKind::pbrt, kelvin));
+        const double ratio = luminance(blackbody_color(BlackbodyKind::kelvin, kelvin)) /
+                             luminance(blackbody_color(BlackbodyKind::pbrt, kelvin));
         EXPECT_NEAR(ratio, 683e-9 * peak, ratio * 0.005) << kelvin;
     }
     EXPECT_EQ(blackbody_color(BlackbodyKind::pbrt, 100), dvec3(0));
