@@ -6,7 +6,7 @@
 #include <string>
 
 namespace tyndall {
-struct EditMemory {
+struct EditState {
     uint64_t drags = 0;       // number of drags so far, which identifies the current one
     std::string held;         // path of the property whose slider is held
     SliderRange range;        // of that slider, fixed while it is held

@@ -11,7 +11,7 @@
 
 namespace tyndall {
 namespace {
-struct Texts {
+struct Args {
     std::string scene, mode = main_mode_name(), stand_in = interactive_mode_name(), quality = "preview", camera,
                        resolution, samples, script, window;
     std::string rate, threads, seed, units = "spec", missing = "error", exposure, view_transform;
@@ -19,39 +19,39 @@ struct Texts {
     bool stats = false;
 };
 
-void add_options(const CommandLine& program, Texts& texts) {
+void add_options(const CommandLine& program, Args& args) {
     const auto option = [&](const char* name, std::string& text, const char* type, const char* help) {
         return program.option(name, text, help, type);
     };
-    option("SCENE", texts.scene, "", "scene file (.json), or a .gltf, .glb or .vdb by itself").required();
+    option("SCENE", args.scene, "", "scene file (.json), or a .gltf, .glb or .vdb by itself").required();
     const auto quality = [&](const char* name, std::string& text, const char* type, const char* help) {
         program.option(name, text, help, type).group("Quality");
     };
-    quality("--mode", texts.mode, "NAME", "technique (default: march); tyndall modes lists them");
-    quality("--stand-in", texts.stand_in, "NAME",
+    quality("--mode", args.mode, "NAME", "technique (default: march); tyndall modes lists them");
+    quality("--stand-in", args.stand_in, "NAME",
             "technique of quick images while the view changes in march and path\n(default: froxel), or none: the same");
-    quality("--quality", texts.quality, "NAME", "draft, preview (default), final or reference");
+    quality("--quality", args.quality, "NAME", "draft, preview (default), final or reference");
     program
-        .options("--set", texts.settings, "one setting, for instance march.step_depth=0.1; may be repeated",
+        .options("--set", args.settings, "one setting, for instance march.step_depth=0.1; may be repeated",
                  "NAME=VALUE")
         .group("Quality");
-    option("--camera", texts.camera, "NAME", "camera by name (default: the scene's)");
-    option("--res", texts.resolution, "WxH", "image size in pixels (default: the scene's)");
-    option("--exposure", texts.exposure, "EV",
+    option("--camera", args.camera, "NAME", "camera by name (default: the scene's)");
+    option("--res", args.resolution, "WxH", "image size in pixels (default: the scene's)");
+    option("--exposure", args.exposure, "EV",
            "exposure of the displayed image, in stops, or auto: measured\n"
            "(default: the scene's, auto where it states none)");
-    option("--view-transform", texts.view_transform, "NAME",
+    option("--view-transform", args.view_transform, "NAME",
            "how values brighter than the display are shown: filmic (AgX;\ndefault) or srgb");
-    quality("--samples", texts.samples, "N", "samples per pixel of a finished image (default: 64)");
-    quality("--seed", texts.seed, "N", "another pattern of noise (default: 0)");
-    option("--light-units", texts.units, "UNITS", "units of a glTF's light intensities: spec (default), unitless, raw");
-    option("--missing", texts.missing, "WHAT", "a missing frame of a VDB sequence: error (default), hold, skip");
-    option("--fps", texts.rate, "N", "target images per second while things move (default: 30)");
-    option("--window", texts.window, "WxH", "size of the window (default: 1280x800)");
-    option("--threads", texts.threads, "N", "threads to use, 1 to 1024 (default: every core)");
-    option("--script", texts.script, "FILE",
+    quality("--samples", args.samples, "N", "samples per pixel of a finished image (default: 64)");
+    quality("--seed", args.seed, "N", "another pattern of noise (default: 0)");
+    option("--light-units", args.units, "UNITS", "units of a glTF's light intensities: spec (default), unitless, raw");
+    option("--missing", args.missing, "WHAT", "a missing frame of a VDB sequence: error (default), hold, skip");
+    option("--fps", args.rate, "N", "target images per second while things move (default: 30)");
+    option("--window", args.window, "WxH", "size of the window (default: 1280x800)");
+    option("--threads", args.threads, "N", "threads to use, 1 to 1024 (default: every core)");
+    option("--script", args.script, "FILE",
            "file of actions, one per line; the window stays open unless the last\nis quit");
-    program.flag("--stats", texts.stats, "print times of the interface and the images on stdout at the end");
+    program.flag("--stats", args.stats, "print times of the interface and the images on stdout at the end");
 }
 
 std::string footer() {
@@ -66,45 +66,45 @@ std::string footer() {
     return text + "Exit codes: those of tyndall (tyndall --help), 69 when there is no display.";
 }
 
-ViewerOptions read_options(const Texts& texts) {
+ViewerOptions read_options(const Args& args) {
     ViewerOptions options;
     ViewState& state = options.state;
-    state.mode = find_mode(texts.mode).name;
-    state.stand_in = texts.stand_in == "none" ? "" : std::string(find_mode(texts.stand_in).name);
-    state.quality = quality_named(texts.quality);
+    state.mode = find_mode(args.mode).name;
+    state.stand_in = args.stand_in == "none" ? "" : std::string(find_mode(args.stand_in).name);
+    state.quality = quality_named(args.quality);
     state.settings = settings_for(state.quality);
-    for (const std::string& assignment : texts.settings) apply_setting(state.settings, assignment);
-    state.camera = texts.camera;
-    if (!texts.resolution.empty()) state.size = resolution_option("--res", texts.resolution);
-    if (!texts.window.empty()) options.window = resolution_option("--window", texts.window);
-    if (!texts.exposure.empty()) apply(state, {Verb::exposure, {texts.exposure}, {}, {}});
-    if (!texts.view_transform.empty()) apply(state, {Verb::view_transform, {texts.view_transform}, {}, {}});
-    if (!texts.samples.empty())
-        state.max_samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 1 << 20));
-    if (!texts.seed.empty()) state.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
-    if (!texts.rate.empty()) state.wanted_rate = number_option("--fps", texts.rate, 1, 1000);
+    for (const std::string& assignment : args.settings) apply_setting(state.settings, assignment);
+    state.camera = args.camera;
+    if (!args.resolution.empty()) state.size = resolution_option("--res", args.resolution);
+    if (!args.window.empty()) options.window = resolution_option("--window", args.window);
+    if (!args.exposure.empty()) apply(state, {Verb::exposure, {args.exposure}, {}, {}});
+    if (!args.view_transform.empty()) apply(state, {Verb::view_transform, {args.view_transform}, {}, {}});
+    if (!args.samples.empty())
+        state.max_samples = static_cast<int>(integer_option("--samples", args.samples, 1, 1 << 20));
+    if (!args.seed.empty()) state.seed = static_cast<uint32_t>(integer_option("--seed", args.seed, 0, UINT32_MAX));
+    if (!args.rate.empty()) state.wanted_rate = number_option("--fps", args.rate, 1, 1000);
     constexpr LightUnits units[] = {LightUnits::spec, LightUnits::unitless, LightUnits::raw};
-    options.load.light_units = units[choice_among("--light-units", texts.units, {"spec", "unitless", "raw"})];
+    options.load.light_units = units[choice_among("--light-units", args.units, {"spec", "unitless", "raw"})];
     constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
-    state.missing = missing[choice_among("--missing", texts.missing, {"error", "hold", "skip"})];
-    options.stats = texts.stats;
-    set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));
-    options.isa = chosen_isa("auto");
+    state.missing = missing[choice_among("--missing", args.missing, {"error", "hold", "skip"})];
+    options.stats = args.stats;
+    set_thread_count(args.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", args.threads, 1, 1024)));
+    options.isa = select_isa("auto");
 
-    check_readable(texts.scene);
-    if (!texts.script.empty()) options.script = parse_script(read_file(texts.script), texts.script);
-    apply(state, {Verb::open, {texts.scene}, {}, {}});
+    check_readable(args.scene);
+    if (!args.script.empty()) options.script = parse_script(read_file(args.script), args.script);
+    apply(state, {Verb::open, {args.scene}, {}, {}});
     return options;
 }
 
 int run(int argc, char** argv) {
     const CommandLine program("tyndall view", "view a scene while lighting it, with every technique and setting",
                               "tyndall-view " TYNDALL_VERSION, "Options");
-    Texts texts;
-    add_options(program, texts);
+    Args args;
+    add_options(program, args);
     program.footer(footer());
     if (!program.read(argc, argv)) return 0;
-    run_viewer(read_options(texts));
+    run_viewer(read_options(args));
     return 0;
 }
 }
@@ -113,5 +113,5 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
     using namespace tyndall;
     flush_denormals();
-    return exit_code_of([&] { return run(argc, argv); });
+    return run_program([&] { return run(argc, argv); });
 }

@@ -30,7 +30,7 @@ void take_loaded(Viewer& viewer) {
         return;
     }
     // A failed load keeps the last good image on screen; it is fatal only without one, or when a script asked for it.
-    if (!state.scene || !viewer.script_place.empty()) fail(loaded->code, viewer.script_place, loaded->error);
+    if (!state.scene || !viewer.script_line.empty()) fail(loaded->code, viewer.script_line, loaded->error);
     state.scene_file = state.scene->file;
     if (std::exchange(state.reloading, false))
         state.file_error = loaded->error;
@@ -45,7 +45,7 @@ void watch_files(Viewer& viewer) {
     viewer.watched_at = viewer.now;
     if (changed_inputs(state.session->inputs).empty()) return;
     state.session->inputs = input_times(*state.scene); // so that a broken file is not read again before its next change
-    viewer.script_place.clear();
+    viewer.script_line.clear();
     reload_scene(state);
 }
 
@@ -62,13 +62,13 @@ void take_pictures(Viewer& viewer) {
     if (std::shared_ptr<const ShownPicture> picture = viewer.thread.take_picture()) {
         viewer.picture_revision = picture->revision;
         if (!picture->error.empty()) {
-            if (!viewer.script.finished()) fail(picture->code, viewer.script_place, picture->error);
+            if (!viewer.script.finished()) fail(picture->code, viewer.script_line, picture->error);
             announce(viewer, picture->error, true);
         } else {
             if (viewer.times.first_picture < 0) viewer.times.first_picture = steady_seconds() - viewer.started;
             if (!picture->quick && picture->mode == viewer.state.mode)
                 viewer.resources.limitations = picture->limitations;
-            if (picture->measured && picture->measures == viewer.state.measures)
+            if (picture->measured && picture->metering_id == viewer.state.metering_id)
                 viewer.state.measured = picture->measured;
             if (picture->ray) viewer.resources.ray = picture->ray;
             if (picture->volume && picture->volume != viewer.resources.volume)
@@ -77,9 +77,9 @@ void take_pictures(Viewer& viewer) {
             viewer.new_picture = true;
         }
     }
-    while (const std::optional<Saved> saved = viewer.thread.take_saved()) {
-        --viewer.files_to_come;
-        if (!saved->error.empty() && !viewer.script.finished()) fail(saved->code, viewer.file_place, saved->error);
+    while (const std::optional<SaveResult> saved = viewer.thread.take_saved()) {
+        --viewer.pending_saves;
+        if (!saved->error.empty() && !viewer.script.finished()) fail(saved->code, viewer.save_line, saved->error);
         if (saved->error.empty())
             announce(viewer, formatted("wrote %s in %.2f s", saved->file.c_str(), saved->seconds), false);
         else
@@ -94,7 +94,7 @@ void take_job(Viewer& viewer) {
     if (viewer.now > viewer.news_until) viewer.resources.news.clear();
     if (!result) return;
     const bool failed = result->code != ExitCode::ok;
-    if (failed && !viewer.script.finished()) fail(result->code, viewer.job_place, result->message);
+    if (failed && !viewer.script.finished()) fail(result->code, viewer.job_line, result->message);
     announce(viewer, result->message, failed);
 }
 
@@ -110,15 +110,15 @@ void post_request(Viewer& viewer) {
     try {
         viewer.thread.post(request_of(state, moving));
     } catch (const Error& error) { // a camera without a view direction at this frame
-        if (!viewer.script.finished()) fail(error.code, viewer.script_place, error.what());
-        tell(viewer, error.what(), true);
+        if (!viewer.script.finished()) fail(error.code, viewer.script_line, error.what());
+        set_message(viewer, error.what(), true);
         viewer.picture_revision = state.revision; // there will be no image
     }
 }
 
 double wait_of(const Viewer& viewer) {
     const bool active = is_moving(viewer) || viewer.now < viewer.input_at + active_time || !viewer.script.finished() ||
-                        viewer.files_to_come > 0 || viewer.state.loading;
+                        viewer.pending_saves > 0 || viewer.state.loading;
     return active ? active_wait : resting_wait;
 }
 
@@ -128,13 +128,13 @@ void take_screenshot(Viewer& viewer) {
     try {
         write_png(file, viewer.window.pixels());
     } catch (const Error& error) {
-        fail(error.code, viewer.script_place, error.what());
+        fail(error.code, viewer.script_line, error.what());
     }
 }
 
 // Handles a request to close the window and files dropped on it.
-void take_wishes(Viewer& viewer) {
-    if (viewer.files_to_come == 0 && viewer.window.take_close()) act(viewer, {Verb::close, {}, {}, {}});
+void poll_window(Viewer& viewer) {
+    if (viewer.pending_saves == 0 && viewer.window.take_close()) act(viewer, {Verb::close, {}, {}, {}});
     if (const std::string file = viewer.window.take_dropped(); !file.empty()) act(viewer, {Verb::open, {file}, {}, {}});
 }
 
@@ -144,7 +144,7 @@ void run_frame(Viewer& viewer) {
     const double start = steady_seconds();
     viewer.frame_seconds = std::min(start - viewer.now, 0.1);
     viewer.now = start;
-    take_wishes(viewer);
+    poll_window(viewer);
     take_loaded(viewer);
     watch_files(viewer);
     take_pictures(viewer);
@@ -161,8 +161,8 @@ void run_frame(Viewer& viewer) {
     viewer.window.end_frame();
 
     const double drawn = steady_seconds();
-    if (viewer.new_picture) viewer.window.set_picture(viewer.resources.picture->codes);
-    if (viewer.new_volume) viewer.window.set_picture(viewer.resources.volume->codes, 1);
+    if (viewer.new_picture) viewer.window.set_texture(viewer.resources.picture->codes);
+    if (viewer.new_volume) viewer.window.set_texture(viewer.resources.volume->codes, 1);
     viewer.new_picture = viewer.new_volume = false;
     viewer.window.show_pixels(viewer.state.zoom >= 1);
     const bool is_new = viewer.window.draw(!viewer.screenshot.empty());
@@ -179,7 +179,7 @@ void run_viewer(const ViewerOptions& options) {
     Viewer viewer(options);
     viewer.script.actions = options.script;
     viewer.started = viewer.now = steady_seconds();
-    while (!viewer.quit && !viewer.state.leaving) run_frame(viewer);
+    while (!viewer.quit && !viewer.state.closing) run_frame(viewer);
     viewer.times.seconds = steady_seconds() - viewer.started;
     viewer.window.hide(); // work in progress takes a moment to stop
     if (options.stats) print_report(times_text(viewer.times, viewer.thread.counts()));

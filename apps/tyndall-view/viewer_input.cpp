@@ -13,7 +13,7 @@ constexpr double reading = 8; // seconds an announcement stays on screen
 constexpr double flying = 25; // key presses per second that a held key counts as
 }
 
-void tell(Viewer& viewer, const std::string& message, bool is_error) {
+void set_message(Viewer& viewer, const std::string& message, bool is_error) {
     viewer.state.message = message, viewer.state.message_is_error = is_error;
 }
 
@@ -30,18 +30,18 @@ void save(Viewer& viewer, const std::string& file) {
     SaveJob job;
     job.file = file;
     job.request = request_of(viewer.state, false);
-    job.camera = viewer.state.free ? "view" : viewer.state.camera;
+    job.camera = viewer.state.free_camera ? "view" : viewer.state.camera;
     job.quality = viewer.state.quality, job.isa = viewer.options.isa;
     job.light_units = viewer.options.load.light_units, job.unsaved = unsaved_text(*viewer.state.session);
     job.inputs = viewer.state.session->scene.inputs;
     viewer.thread.save(std::move(job));
-    ++viewer.files_to_come;
+    ++viewer.pending_saves;
 }
 
 void start_job(Viewer& viewer, FileJob job) {
     viewer.jobs.start(std::move(job));
     viewer.state.job = viewer.jobs.status();
-    viewer.job_place = viewer.script_place;
+    viewer.job_line = viewer.script_line;
 }
 
 std::string word_of(const Action& action, size_t number) {
@@ -56,7 +56,7 @@ RenderRequest sequence_of(const Viewer& viewer, const Action& action) {
 void copy_command(Viewer& viewer, const RenderRequest& request) {
     const std::string command = command_of(viewer.state, request);
     ImGui::SetClipboardText(command.c_str());
-    tell(viewer, "copied: " + command, false);
+    set_message(viewer, "copied: " + command, false);
 }
 
 // Performs an action of any kind. Throws Error.
@@ -79,10 +79,10 @@ void perform(Viewer& viewer, const Action& action) {
         viewer.screenshot = action.words[0];
         break;
     case Verb::render:
-        start_job(viewer, render_files(viewer.state, sequence_of(viewer, action)));
+        start_job(viewer, render_job(viewer.state, sequence_of(viewer, action)));
         break;
     case Verb::bake:
-        start_job(viewer, bake_files(viewer.state, word_of(action, 0), word_of(action, 1), word_of(action, 2)));
+        start_job(viewer, bake_job(viewer.state, word_of(action, 0), word_of(action, 1), word_of(action, 2)));
         break;
     case Verb::stop_job:
         viewer.jobs.stop();
@@ -102,12 +102,12 @@ void perform(Viewer& viewer, const Action& action) {
 
 void act(Viewer& viewer, const Action& action) {
     // A scene that the user opens is not the script's: if it fails to load, the script goes on.
-    if (action.verb == Verb::open || action.verb == Verb::answer) viewer.script_place.clear();
+    if (action.verb == Verb::open || action.verb == Verb::answer) viewer.script_line.clear();
     try {
-        tell(viewer, {}, false);
+        set_message(viewer, {}, false);
         perform(viewer, action);
     } catch (const std::exception& error) {
-        tell(viewer, error.what(), true);
+        set_message(viewer, error.what(), true);
     }
 }
 
@@ -124,7 +124,7 @@ ScriptFacts facts_of(const Viewer& viewer) {
         facts.samples = picture->samples;
     facts.job = viewer.state.job.has_value();
     facts.busy =
-        viewer.drag.frame >= 0 || viewer.key_frames > 0 || viewer.files_to_come > 0 || !viewer.screenshot.empty();
+        viewer.drag.frame >= 0 || viewer.key_frames > 0 || viewer.pending_saves > 0 || !viewer.screenshot.empty();
     return facts;
 }
 
@@ -134,11 +134,11 @@ void follow_script(Viewer& viewer) {
     while (!viewer.quit) {
         const std::optional<Action> action = next_action(viewer.script, viewer.state, facts_of(viewer));
         if (!action) return;
-        viewer.script_place = viewer.file_place = action->place;
+        viewer.script_line = viewer.save_line = action->location;
         try {
             perform(viewer, *action);
         } catch (const Error& error) {
-            fail(error.code, action->place, error.what());
+            fail(error.code, action->location, error.what());
         }
     }
 }
@@ -163,7 +163,7 @@ std::optional<Action> key_action(Viewer& viewer, const std::string& key) {
     try {
         return action_of_key(viewer.state, key);
     } catch (const Error& error) {
-        tell(viewer, error.what(), true);
+        set_message(viewer, error.what(), true);
         return {};
     }
 }

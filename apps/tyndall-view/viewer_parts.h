@@ -27,16 +27,16 @@ struct Viewer {
     PanelResources resources;
     uint64_t picture_revision = 0; // of the render thread's newest answer, with or without an image
     bool new_picture = false, new_volume = false;
-    PanelMemory memory;
+    PanelState memory;
     ScriptPlayer script;
     ScriptedInput scripted;
     int key_frames = 0; // interface frames until a script's key is released
     Drag drag;
-    std::string script_place; // line of the current action in its script
-    std::string screenshot;   // file of a screenshot to take after this frame
-    std::string file_place;   // script line of the snapshot being written
-    std::string job_place;    // script line of the running job
-    int files_to_come = 0;
+    std::string script_line; // line of the current action in its script
+    std::string screenshot;  // file of a screenshot to take after this frame
+    std::string save_line;   // script line of the snapshot being written
+    std::string job_line;    // script line of the running job
+    int pending_saves = 0;
     bool quit = false;
     InterfaceTimes times;
     JobThread jobs;
@@ -47,7 +47,7 @@ struct Viewer {
           thread(Window::wake) {}
 };
 
-void tell(Viewer& viewer, const std::string& message, bool is_error); // shown until the next action
+void set_message(Viewer& viewer, const std::string& message, bool is_error); // shown until the next action
 
 // Shows news of background work for long enough to be read.
 void announce(Viewer& viewer, const std::string& news, bool is_error);

@@ -203,7 +203,7 @@ void Window::swap() { glfwSwapBuffers(window_); }
 
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(window_, title.c_str()); }
 
-void Window::set_picture(const Image<glm::u8vec4>& codes, size_t which) {
+void Window::set_texture(const Image<glm::u8vec4>& codes, size_t which) {
     glBindTexture(GL_TEXTURE_2D, textures_[which]);
     const ivec2 size = codes.size;
     if (size == texture_sizes_[which])

@@ -40,7 +40,7 @@ public:
     void set_title(const std::string& title);
 
     // Uploads texture 0 (the image) or 1 (the volume inspector's). Call between end_frame() and draw().
-    void set_picture(const Image<glm::u8vec4>& codes, size_t which = 0);
+    void set_texture(const Image<glm::u8vec4>& codes, size_t which = 0);
     void show_pixels(bool each);           // magnifies the image's pixels as squares, or interpolates
     void* picture(size_t which = 0) const; // texture for ImGui::Image
     Image<glm::u8vec3> pixels() const;     // reads back what was drawn

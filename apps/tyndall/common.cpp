@@ -36,7 +36,7 @@ const char* stop_remark() { return remark_of_stop; }
 
 void report_failure_to_openjd(bool wanted) { openjd_hears = wanted; }
 
-int exit_code_of(const std::function<int()>& work) {
+int run_program(const std::function<int()>& work) {
     const auto report = [](std::string_view text, ExitCode code) {
         say("error: " + printable(text, 480));
         if (openjd_hears) std::printf("openjd_fail: %s\n", printable(text, 480).c_str());
@@ -91,13 +91,13 @@ ivec2 resolution_option(std::string_view option, std::string_view text) {
             integer_option(option, text.substr(cross + 1), 1, largest_side)};
 }
 
-std::string chosen_isa(const std::string& text) {
+std::string select_isa(const std::string& text) {
     set_isa(text);
     set_embree_isa(text);
     return text == "avx512" ? "avx512" : "avx2";
 }
 
-void use_planned_isa(const std::string& planned) { chosen_isa(planned == "avx512" ? planned : "auto"); }
+void use_planned_isa(const std::string& planned) { select_isa(planned == "avx512" ? planned : "auto"); }
 
 std::vector<std::string> comma_list(std::string_view text) {
     std::vector<std::string> pieces;

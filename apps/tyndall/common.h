@@ -58,9 +58,9 @@ unsigned seconds_to_stop(); // grace period from a signal until the process exit
 const char* stop_remark();  // empty where nothing is kept
 
 // Runs the program's work and returns its exit code; an exception becomes a line on stderr, unless a signal caused it.
-int exit_code_of(const std::function<int()>& work);
+int run_program(const std::function<int()>& work);
 
-// Sets whether exit_code_of() also prints an error as an openjd_fail line on stdout.
+// Sets whether run_program() also prints an error as an openjd_fail line on stdout.
 void report_failure_to_openjd(bool wanted);
 
 // Prints one line for people on stderr; text from files or users must have passed printable().
@@ -77,7 +77,7 @@ inline constexpr int largest_side = 16384; // the most that read_exr() accepts
 ivec2 resolution_option(std::string_view option, std::string_view text);
 // Sets the instruction set of all kernels. Returns the one that determines the bits of the result: avx2 unless avx512
 // is asked for, since the vector kernels round identically on both and Embree uses avx2 by default.
-std::string chosen_isa(const std::string& text);
+std::string select_isa(const std::string& text);
 // Sets the fastest instruction set with the same bits as the plan's. Throws Error (usage) when this machine lacks it.
 void use_planned_isa(const std::string& planned);
 // Splits text at its commas.

@@ -64,19 +64,19 @@ std::string exit_code_help() {
     return text;
 }
 
-struct GlobalTexts {
+struct GlobalArgs {
     std::string threads, progress;
 };
 
 constexpr const char* global_group = "For every command";
 
-void add_globals(const Command& program, Globals& globals, GlobalTexts& texts) {
+void add_globals(const Command& program, Globals& globals, GlobalArgs& args) {
     program
-        .option("--threads", texts.threads,
+        .option("--threads", args.threads,
                 "threads to use, 1 to 1024 (default: as many as affinity\nand control group allow)", "N")
         .group(global_group);
     program
-        .option("--progress", texts.progress,
+        .option("--progress", args.progress,
                 "how progress is shown: alf (ALF_PROGRESS lines for render farms), openjd\n"
                 "(for Open Job Description), json, bar, none (default: bar on a terminal,\n"
                 "alf elsewhere)",
@@ -88,15 +88,15 @@ void add_globals(const Command& program, Globals& globals, GlobalTexts& texts) {
     program.flag("-v,--verbose", globals.verbose, "say more: threads, files read, remarks").group(global_group);
 }
 
-void apply_globals(Globals& globals, const GlobalTexts& texts) {
+void apply_globals(Globals& globals, const GlobalArgs& args) {
     const std::vector<std::string> styles{"alf", "openjd", "json", "bar", "none"};
     constexpr ProgressStyle values[] = {ProgressStyle::alf, ProgressStyle::openjd, ProgressStyle::json,
                                         ProgressStyle::bar, ProgressStyle::none};
-    if (!texts.progress.empty()) globals.progress = values[choice_among("--progress", texts.progress, styles)];
-    if (globals.quiet && (texts.progress.empty() || globals.progress == ProgressStyle::none))
+    if (!args.progress.empty()) globals.progress = values[choice_among("--progress", args.progress, styles)];
+    if (globals.quiet && (args.progress.empty() || globals.progress == ProgressStyle::none))
         globals.progress = ProgressStyle::silent;
     report_failure_to_openjd(globals.progress == ProgressStyle::openjd);
-    set_thread_count(texts.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", texts.threads, 1, 1024)));
+    set_thread_count(args.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", args.threads, 1, 1024)));
     if (globals.verbose && !globals.quiet) say(formatted("threads: %d", thread_count()));
 }
 
@@ -106,8 +106,8 @@ int run(int argc, char** argv) {
                               "tyndall " TYNDALL_VERSION, global_group);
     program.footer(exit_code_help());
     Globals globals;
-    GlobalTexts texts;
-    add_globals(program, globals, texts);
+    GlobalArgs args;
+    add_globals(program, globals, args);
     const std::vector<Run> commands{
         add_bake(program),    add_render(program),  add_info(program),   add_check(program),
         add_modes(program),   add_compare(program), add_verify(program), add_plan(program),
@@ -115,7 +115,7 @@ int run(int argc, char** argv) {
         add_explain(program), add_stress(program),  add_chart(program),  add_view(program)};
     program.end_every_footer("\nFor every command: --threads N, --progress STYLE, --json, -q, -v (tyndall --help).");
     if (!program.read(argc, argv)) return 0;
-    apply_globals(globals, texts);
+    apply_globals(globals, args);
     if (const std::optional<size_t> chosen = program.chosen()) return commands[*chosen](globals);
     print_report(introduction);
     return 0;
@@ -128,7 +128,7 @@ int main(int argc, char** argv) {
     flush_denormals();
     open_standard_streams();
     handle_signals();
-    const int code = exit_code_of([&] { return run(argc, argv); });
+    const int code = run_program([&] { return run(argc, argv); });
     if (!stop_signal || code == static_cast<int>(ExitCode::out_of_memory)) return code;
     say(formatted("stopped by signal %d%s", static_cast<int>(stop_signal), stop_remark()));
     return static_cast<int>(ExitCode::stopped) + stop_signal;

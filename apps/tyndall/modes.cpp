@@ -73,7 +73,7 @@ std::string mode_text(const Mode& mode) {
     };
     return std::string(mode.name) + "\n" + line("how", mode.summary) + line("promises", name_of(mode.accuracy)) +
            line("use it", "for " + std::string(mode.use)) +
-           (mode.remembers ? line("--history", "lets it use earlier frames") : "") +
+           (mode.uses_history ? line("--history", "lets it use earlier frames") : "") +
            (mode.adds_fluence ? line("--orders", "adds multiple scattering") : "");
 }
 }

@@ -30,7 +30,7 @@ template<class T> struct Interval {
     T length() const { return empty() ? T(0) : high - low; }
 };
 
-template<class T> Interval<T> common(Interval<T> a, Interval<T> b) {
+template<class T> Interval<T> intersection(Interval<T> a, Interval<T> b) {
     return {std::max(a.low, b.low), std::min(a.high, b.high)};
 }
 

@@ -56,7 +56,7 @@ void parallel_ranges(int64_t count, int64_t grain, const std::function<void(int6
 }
 
 // Each body is isolated and waits for its own loops only; the calling thread helps with all of them.
-void run_together(std::initializer_list<std::function<void()>> bodies) {
+void parallel_invoke(std::initializer_list<std::function<void()>> bodies) {
     if (bodies.size() == 0) return;
     tbb::task_group_context context;
     context.capture_fp_settings();

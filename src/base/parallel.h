@@ -19,7 +19,7 @@ void parallel_ranges(int64_t count, int64_t grain, const std::function<void(int6
 
 // Calls all bodies, concurrently as far as threads allow. A thread that has finished helps the others with their loops,
 // so the caller must not hold a lock. An exception stops the others and is rethrown.
-void run_together(std::initializer_list<std::function<void()>> bodies);
+void parallel_invoke(std::initializer_list<std::function<void()>> bodies);
 
 // Flushes denormals to zero on this thread and in every loop it starts: the thin edges of fog are full of them. Loops
 // inside libraries follow only if this is called before the thread pool is first used.

@@ -22,7 +22,7 @@ Store& store() {
 }
 }
 
-void* take_memory(size_t bytes) {
+void* acquire_memory(size_t bytes) {
     {
         const std::lock_guard lock(store().mutex);
         std::vector<Block>& blocks = store().blocks;
@@ -36,7 +36,7 @@ void* take_memory(size_t bytes) {
     return ::operator new(bytes, alignment);
 }
 
-void give_memory(void* memory, size_t bytes) noexcept {
+void release_memory(void* memory, size_t bytes) noexcept {
     if (bytes >= min_kept && bytes <= max_kept) {
         const std::lock_guard lock(store().mutex);
         std::vector<Block>& blocks = store().blocks;

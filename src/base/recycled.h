@@ -8,16 +8,16 @@
 
 namespace tyndall {
 // 64-byte aligned. Returned blocks are kept, up to a limit, for requests of the same size only.
-void* take_memory(size_t bytes);
-void give_memory(void* memory, size_t bytes) noexcept;
+void* acquire_memory(size_t bytes);
+void release_memory(void* memory, size_t bytes) noexcept;
 
 // Elements constructed without a value are left uninitialized.
 template<class T> struct RecyclingAllocator {
     using value_type = T;
     RecyclingAllocator() = default;
     template<class U> RecyclingAllocator(const RecyclingAllocator<U>&) {}
-    T* allocate(size_t count) { return static_cast<T*>(take_memory(count * sizeof(T))); }
-    void deallocate(T* memory, size_t count) noexcept { give_memory(memory, count * sizeof(T)); }
+    T* allocate(size_t count) { return static_cast<T*>(acquire_memory(count * sizeof(T))); }
+    void deallocate(T* memory, size_t count) noexcept { release_memory(memory, count * sizeof(T)); }
     template<class U> void construct(U* at) noexcept { ::new (static_cast<void*>(at)) U; }
     template<class U, class... Values> void construct(U* at, Values&&... values) {
         ::new (static_cast<void*>(at)) U(std::forward<Values>(values)...);

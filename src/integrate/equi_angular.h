@@ -9,10 +9,10 @@ template<class T> struct EquiAngular {
     T nearest{}, height{}; // t of the point closest to the light, and its distance from the light
     T from{}, to{};        // θ at the ends of the segment
 
-    struct Place {
+    struct Sample {
         T t, length; // length: dt/dshare
     };
-    Place at(T share) const { // share: fraction of the angle range, 0..1
+    Sample at(T share) const { // share: fraction of the angle range, 0..1
         const T slope = std::tan(from + share * (to - from));
         return {nearest + height * slope, (to - from) * height * (1 + slope * slope)};
     }

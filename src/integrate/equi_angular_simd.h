@@ -29,7 +29,7 @@ struct EquiAngular16 {
     }
     // Converts a quadrature weight over the shares to a length along the ray.
     HWY_INLINE Floats length(const Floats& weight, const Floats& at) const {
-        return weight * angle * height * fused(at, at, 1.0f);
+        return weight * angle * height * fma(at, at, 1.0f);
     }
 };
 }

@@ -17,7 +17,7 @@ void dim_kernel(const std::vector<Medium>& media, const RayBatch& batch, std::sp
         for (int axis = 0; axis < 3; ++axis) v[axis][i] = ray.origin[axis], v[3 + axis][i] = ray.direction[axis];
         v[6][i] = std::min(ray.t_max, sun_distance);
     }
-    const LightPaths paths{{load(v[0]), load(v[1]), load(v[2])}, {load(v[3]), load(v[4]), load(v[5])}, load(v[6])};
+    const Segments16 paths{{load(v[0]), load(v[1]), load(v[2])}, {load(v[3]), load(v[4]), load(v[5])}, load(v[6])};
     Floats depth = 0.0f;
     for (const Medium& medium : media) depth = depth + analytic_depth16(medium, paths);
     alignas(64) float transmittance[16];

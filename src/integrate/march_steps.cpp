@@ -59,7 +59,7 @@ Interval<float> scene_part(const Snapshot& snapshot, const Ray& ray, Interval<fl
 }
 
 void append_march_steps(const MarchSteps& rule, const Snapshot& snapshot, const Ray& ray, std::vector<Step>& steps) {
-    const Interval<float> stretch = fog_stretch(snapshot.media, ray);
+    const Interval<float> stretch = fog_interval(snapshot.media, ray);
     const Interval<float> scene = scene_part(snapshot, ray, stretch);
     append_piece(rule, snapshot, ray, {stretch.low, scene.low}, steps);
     append_piece(rule, snapshot, ray, scene, steps);

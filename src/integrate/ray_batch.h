@@ -16,8 +16,8 @@ struct Scatter {
     int steps = 0;           // number of evaluations, for statistics
     // Modes with Surfaces::own: light of surfaces and of the background, attenuated by the fog.
     vec3 surface{0}, background{0};
-    float held = 0; // such modes: share of the light from behind the fog that holdout mattes block
-    vec3 tint{1};   // per-channel transmittance relative to its mean
+    float holdout = 0; // such modes: share of the light from behind the fog that holdout mattes block
+    vec3 tint{1};      // per-channel transmittance relative to its mean
 
     vec3 whole() const { return surface + background + radiance; }
 };
@@ -36,7 +36,7 @@ struct RayBatch {
     std::span<const uint32_t> ids{};       // per ray, unique to pixel and sample: seed for random numbers
     std::span<vec3> parts{};               // empty, or rays × part_count(lights) radiances that the mode adds to
     std::span<const float> jitter{};       // per ray, in [0,1), stratified over the samples of a pixel; empty = ½
-    std::span<const SamplePlace> places{}; // per ray: position in its pixel's low-discrepancy sequence; empty = use ids
+    std::span<const SampleIndex> places{}; // per ray: position in its pixel's low-discrepancy sequence; empty = use ids
     std::span<const float> clip_near{};    // Surfaces::own, per ray: nearer surfaces are ignored, fog is not; empty = 0
     std::span<const vec2> positions{};     // of the rays in the image, in pixels from the upper left; empty = unknown
     std::span<const bool> open{};          // per ray: does not hit a surface; empty = unknown

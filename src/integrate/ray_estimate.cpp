@@ -13,7 +13,7 @@ RayEstimate estimate_ray(const ScatterFunction& scatter, const Ray& ray, int sam
             const size_t count = static_cast<size_t>(std::min(16, samples - first));
             Ray rays[16];
             uint32_t ids[16];
-            SamplePlace places[16];
+            SampleIndex places[16];
             Scatter results[16];
             for (size_t i = 0; i < count; ++i) {
                 const uint32_t index = static_cast<uint32_t>(first) + static_cast<uint32_t>(i);

@@ -86,7 +86,7 @@ struct Thirds {
 };
 Thirds divide_fog(const SingleScattering& frame, const Ray& ray) {
     const float end = static_cast<float>(std::min<double>(ray.t_max, horizon(ray, frame.snapshot.media)));
-    const Interval<float> fog = fog_stretch(frame.snapshot.media, {ray.origin, ray.direction, end});
+    const Interval<float> fog = fog_interval(frame.snapshot.media, {ray.origin, ray.direction, end});
     const Interval<float> scene = scene_part(frame.snapshot, ray, fog);
     return {{fog.low, scene.low, scene.high, fog.high}};
 }
@@ -103,10 +103,10 @@ void find_steps(const SingleScattering& frame, std::span<const Ray> rays, RaySeg
     }
     const int steps = frame.steps, few = std::max(steps / 4, 1);
     const int counts[3] = {used[0] ? few : 0, used[1] ? steps : 0, used[2] ? few : 0};
-    cuts.most = counts[0] + counts[1] + counts[2];
-    cuts.at.resize(16 * (static_cast<size_t>(cuts.most) + 1));
+    cuts.max_pieces = counts[0] + counts[1] + counts[2];
+    cuts.at.resize(16 * (static_cast<size_t>(cuts.max_pieces) + 1));
     float* at = cuts.at.data();
-    for (int ray = 0; ray < 16; ++ray) at[ray] = low[0][ray], cuts.pieces[ray] = cuts.most;
+    for (int ray = 0; ray < 16; ++ray) at[ray] = low[0][ray], cuts.pieces[ray] = cuts.max_pieces;
     for (int part = 0; part < 3; ++part)
         for (int k = 1; k <= counts[part]; ++k) {
             const float share = static_cast<float>(k) / static_cast<float>(counts[part]);
@@ -132,19 +132,19 @@ void find_step_cuts(const SingleScattering& frame, const Ray& ray, std::vector<d
 void find_segments(const SingleScattering& frame, std::span<const Ray> rays, RaySegments& cuts) {
     if (frame.sampled && !frame.rule) return find_steps(frame, rays, cuts);
     static thread_local std::vector<double> own;
-    cuts.most = 0;
+    cuts.max_pieces = 0;
     for (size_t ray = 0; ray < 16; ++ray) {
         own.clear();
         if (ray < rays.size())
             frame.sampled ? find_step_cuts(frame, rays[ray], own) : find_even_cuts(frame, rays[ray], own);
         if (cuts.at.size() < 16 * (own.size() + 1)) cuts.at.resize(16 * (own.size() + 1));
         cuts.pieces[ray] = std::max(static_cast<int>(own.size()) - 1, 0);
-        cuts.most = std::max(cuts.most, cuts.pieces[ray]);
+        cuts.max_pieces = std::max(cuts.max_pieces, cuts.pieces[ray]);
         cuts.at[ray] = 0;
         for (size_t k = 0; k < own.size(); ++k) cuts.at[16 * k + ray] = static_cast<float>(own[k]);
     }
     for (size_t ray = 0; ray < 16; ++ray)
-        for (int k = cuts.pieces[ray] + 1; k <= cuts.most; ++k)
+        for (int k = cuts.pieces[ray] + 1; k <= cuts.max_pieces; ++k)
             cuts.at[16 * static_cast<size_t>(k) + ray] = cuts.high(ray);
 }
 }

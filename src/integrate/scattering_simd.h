@@ -25,7 +25,7 @@ HWY_INLINE Vec3s scattering(const std::vector<Medium>& media, const Vec3s& posit
     Vec3s sum = splat(vec3(0));
     for (size_t m = 0; m < media.size(); ++m) {
         const Optics& optics = media[m].optics;
-        sum = fused(albedo16(optics, position), extinction(m) * phase_value(optics.phase, cosine), sum);
+        sum = fma(albedo16(optics, position), extinction(m) * phase_value(optics.phase, cosine), sum);
     }
     return sum;
 }
@@ -36,7 +36,7 @@ HWY_INLINE Vec3s scattering(const std::vector<Medium>& media, const Floats& cosi
     Vec3s sum = splat(vec3(0));
     for (size_t m = 0; m < media.size(); ++m) {
         const Optics& optics = media[m].optics;
-        sum = fused(splat(optics.albedo), extinction(m) * phase_value(optics.phase, cosine), sum);
+        sum = fma(splat(optics.albedo), extinction(m) * phase_value(optics.phase, cosine), sum);
     }
     return sum;
 }
@@ -59,25 +59,25 @@ HWY_INLINE Vec3s source16(const Optics& optics, vec3 ambient, bool emits, const 
 
 // Emission, scattered ambient light and, with a fluence grid, multiple scattering, per meter.
 template<class Extinction>
-HWY_INLINE Vec3s glow(const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
-                      const Vec3s& direction, const Extinction& extinction) {
+HWY_INLINE Vec3s other_source(const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
+                              const Vec3s& direction, const Extinction& extinction) {
     Vec3s sum = splat(vec3(0));
     for (size_t m = 0; m < snapshot.media.size(); ++m)
-        sum = fused(source16(snapshot.media[m].optics, snapshot.ambient, true, position), extinction(m), sum);
+        sum = fma(source16(snapshot.media[m].optics, snapshot.ambient, true, position), extinction(m), sum);
     return fluence ? sum + scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
 }
 
 // One kind of that light only.
 template<class Extinction>
-HWY_INLINE Vec3s glow_of(OtherLight light, const Snapshot& snapshot, const FluenceGrid* fluence, const Vec3s& position,
-                         const Vec3s& direction, const Extinction& extinction) {
+HWY_INLINE Vec3s other_source(OtherLight light, const Snapshot& snapshot, const FluenceGrid* fluence,
+                              const Vec3s& position, const Vec3s& direction, const Extinction& extinction) {
     Vec3s sum = splat(vec3(0));
     if (light == OtherLight::multiple)
         return fluence ? scattered_fluence(*fluence, snapshot.media, position, direction, extinction) : sum;
     const bool emits = light == OtherLight::emission;
     for (size_t m = 0; m < snapshot.media.size(); ++m)
-        sum = fused(source16(snapshot.media[m].optics, emits ? vec3(0) : snapshot.ambient, emits, position),
-                    extinction(m), sum);
+        sum = fma(source16(snapshot.media[m].optics, emits ? vec3(0) : snapshot.ambient, emits, position),
+                  extinction(m), sum);
     return sum;
 }
 }

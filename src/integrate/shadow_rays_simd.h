@@ -45,8 +45,8 @@ template<class Key> void aim_at_points(const Light& light, uint32_t k, const Key
 // Transmission of surfaces between a light and the wanted points, by one packet of shadow rays, or for a soft light by
 // the mean over `points` packets.
 template<class Key>
-Floats share_by_rays(const Occluders& occluders, const Light& light, const Vec3s& position,
-                     const LightSamples& light_at, const Mask16& wanted, int points, const Key& key) {
+Floats traced_visibility(const Occluders& occluders, const Light& light, const Vec3s& position,
+                         const LightSamples& light_at, const Mask16& wanted, int points, const Key& key) {
     Occluders::ShadowRays rays;
     alignas(64) float share[16] = {};
     aim_at_center(position, light_at, wanted, rays);

@@ -119,9 +119,9 @@ void add_mean_environment(const View& view, const Snapshot& snapshot, Limitation
     const double nits = nits_in_fog(snapshot);
     if (!(nits > 0)) return;
     const double off = off_by_mean(view, snapshot);
-    limitations.push_back({off > wrong_share  ? Severity::wrong
-                           : off > seen_share ? Severity::degraded
-                                              : Severity::info,
+    limitations.push_back({off > wrong_error     ? Severity::wrong
+                           : off > visible_error ? Severity::degraded
+                                                 : Severity::info,
                            &limitation::mean_environment,
                            Subject::light,
                            snapshot.environment->name,
@@ -176,7 +176,7 @@ void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations
     if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
     for (const Light& light : snapshot.lights)
         if (light.area && light.volume_scale > 0) {
-            const double within = far_enough(*light.area, tolerated);
+            const double within = far_distance(*light.area, tolerated);
             limitations.push_back({severity_within(view, snapshot, light.position, within),
                                    &limitation::lamp_for_face,
                                    Subject::light,
@@ -192,7 +192,7 @@ void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
     double reach = 0;
     Severity severity = Severity::degraded;
     for (const Light& lamp : lamps) {
-        const double within = far_enough(lamp, tolerated);
+        const double within = far_distance(lamp, tolerated);
         reach = std::max(reach, within);
         if (ends_within(snapshot, lamp.position, within)) severity = Severity::wrong;
     }

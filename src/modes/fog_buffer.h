@@ -16,7 +16,7 @@ struct FogBuffer {
 };
 
 struct FogBufferOptions {
-    Resolution share = Resolution::full;
+    Resolution resolution = Resolution::full;
     bool blur = false; // over 4×4 pixels of similar ray length, the period of an ordered jitter
 };
 
@@ -28,15 +28,15 @@ ScatterFunction from_fog_buffer(const View& view, const Snapshot& snapshot, cons
                                 ScatterFunction whole, History* history);
 
 // An image size at a reduced resolution, rounded up.
-ivec2 shared_size(ivec2 size, Resolution share);
+ivec2 reduced_size(ivec2 size, Resolution resolution);
 
 struct Medium;
 
 // Averages each pixel with neighbors of similar ray length. The weights ½ 1 1 1 ½ along each side give every phase of a
 // 4×4 pattern the same total weight.
-void blur_pattern(FogBuffer& picture);
+void blur_pattern(FogBuffer& buffer);
 
 // Blends in the last frame's fog, reprojected at the mean distance from which the light of homogeneous fog comes. The
 // larger the parallax between the near and far half of that light, the lower the weight of the history.
-void go_on_from(const FogBuffer& before, std::span<const Medium> media, FogBuffer& picture);
+void accumulate_fog(const FogBuffer& before, std::span<const Medium> media, FogBuffer& buffer);
 }

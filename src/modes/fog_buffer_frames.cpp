@@ -15,13 +15,13 @@ constexpr float max_blur = 0.1f;  // pixels² of variance added by bilinear resa
 struct Range {
     vec3 low{infinity}, high{-infinity};
 };
-Range range_around(const FogBuffer& picture, ivec2 pixel) {
+Range range_around(const FogBuffer& buffer, ivec2 pixel) {
     Range range;
-    const ivec2 low = glm::max(pixel - 1, 0), high = glm::min(pixel + 1, picture.fog.size - 1);
+    const ivec2 low = glm::max(pixel - 1, 0), high = glm::min(pixel + 1, buffer.fog.size - 1);
     for (int y = low.y; y <= high.y; ++y)
         for (int x = low.x; x <= high.x; ++x) {
-            range.low = glm::min(range.low, picture.fog.at(x, y).radiance);
-            range.high = glm::max(range.high, picture.fog.at(x, y).radiance);
+            range.low = glm::min(range.low, buffer.fog.at(x, y).radiance);
+            range.high = glm::max(range.high, buffer.fog.at(x, y).radiance);
         }
     return range;
 }
@@ -56,39 +56,39 @@ float blur_of(vec2 pixel) {
 }
 }
 
-void blur_pattern(FogBuffer& picture) {
-    const ivec2 size = picture.fog.size;
-    const FogBuffer source = picture;
+void blur_pattern(FogBuffer& buffer) {
+    const ivec2 size = buffer.fog.size;
+    const FogBuffer source = buffer;
     parallel_for(size.y, [&](int64_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < size.x; ++x) {
             Scatter sum{vec3(0), 0, 0, 0, vec3(0)};
-            std::vector<vec3> parts(picture.parts.size(), vec3(0));
+            std::vector<vec3> parts(buffer.parts.size(), vec3(0));
             float total = 0;
             for (int j = std::max(y - 2, 0); j <= std::min(y + 2, size.y - 1); ++j)
                 for (int i = std::max(x - 2, 0); i <= std::min(x + 2, size.x - 1); ++i) {
-                    if (!like(source.length.at(i, j), source.length.at(x, y))) continue;
+                    if (!similar_length(source.length.at(i, j), source.length.at(x, y))) continue;
                     const float weight = (std::abs(i - x) == 2 ? 0.5f : 1) * (std::abs(j - y) == 2 ? 0.5f : 1);
                     add(sum, source.fog.at(i, j), weight), total += weight;
                     for (size_t l = 0; l < parts.size(); ++l) parts[l] += source.parts[l].at(i, j) * weight;
                 }
-            Scatter& result = picture.fog.at(x, y);
+            Scatter& result = buffer.fog.at(x, y);
             const int steps = result.steps;
             result = {vec3(0), 0, 0, steps, vec3(0)};
             add(result, sum, 1 / total);
-            for (size_t l = 0; l < parts.size(); ++l) picture.parts[l].at(x, y) = parts[l] / total;
+            for (size_t l = 0; l < parts.size(); ++l) buffer.parts[l].at(x, y) = parts[l] / total;
         }
     });
 }
 
-void go_on_from(const FogBuffer& before, std::span<const Medium> media, FogBuffer& picture) {
-    const FogBuffer now = picture;
+void accumulate_fog(const FogBuffer& before, std::span<const Medium> media, FogBuffer& buffer) {
+    const FogBuffer now = buffer;
     parallel_for(now.fog.size.y, [&](int64_t row) {
         const int y = static_cast<int>(row);
         for (int x = 0; x < now.fog.size.x; ++x) {
             Ray ray = ray_through(now, {x, y});
             ray.t_max = now.length.at(x, y);
-            const Interval<float> stretch = fog_stretch(media, ray);
+            const Interval<float> stretch = fog_interval(media, ray);
             if (stretch.empty()) continue;
             const std::optional<Seen> seen = seen_before(before, stretch, ray, now.fog.at(x, y).transmittance);
             if (!seen || !glm::all(glm::greaterThanEqual(seen->pixel, vec2(0))) ||
@@ -100,7 +100,7 @@ void go_on_from(const FogBuffer& before, std::span<const Medium> media, FogBuffe
             const float length =
                 eye.ortho_height > 0 ? glm::dot(place - eye.position, eye.forward) : glm::length(place - eye.position);
             const Mixed old = mixed(before, taps, length);
-            if (!(old.weight >= enough) || !is_finite(old.fog.radiance)) continue;
+            if (!(old.weight >= min_weight) || !is_finite(old.fog.radiance)) continue;
 
             float age = 0;
             for (int k = 0; k < 4; ++k) age += before.age.at(taps.at[k].x, taps.at[k].y) * taps.weight[k];
@@ -108,18 +108,18 @@ void go_on_from(const FogBuffer& before, std::span<const Medium> media, FogBuffe
             age = std::max(1.0f, std::min({age + 1, longest_age, sharp, still}));
             const Range range = range_around(now, {x, y});
             const float share = 1 / age;
-            Scatter& fog = picture.fog.at(x, y);
+            Scatter& fog = buffer.fog.at(x, y);
             fog.radiance = glm::mix(glm::clamp(old.fog.radiance, range.low, range.high), fog.radiance, share);
             fog.transmittance = glm::mix(old.fog.transmittance, fog.transmittance, share);
-            picture.age.at(x, y) = age;
+            buffer.age.at(x, y) = age;
             // Parts keep their fractions of the total; where the new frame has no light, the history's goes to the
             // first part.
             for (int c = 0; c < 3 && !now.parts.empty(); ++c) {
                 const float whole = now.fog.at(x, y).radiance[c];
                 if (whole > 0)
-                    for (Image<vec3>& part : picture.parts) part.at(x, y)[c] *= fog.radiance[c] / whole;
+                    for (Image<vec3>& part : buffer.parts) part.at(x, y)[c] *= fog.radiance[c] / whole;
                 else
-                    picture.parts[0].at(x, y)[c] = fog.radiance[c];
+                    buffer.parts[0].at(x, y)[c] = fog.radiance[c];
             }
         }
     });

@@ -4,13 +4,13 @@
 #include "scene/camera.h"
 
 namespace tyndall {
-inline constexpr float alike = 0.05f; // relative difference in length below which rays show the same fog
-inline constexpr float enough = 0.2f; // minimum total weight of similar neighbors
+inline constexpr float length_tolerance = 0.05f; // relative difference in length below which rays show the same fog
+inline constexpr float min_weight = 0.2f;        // minimum total weight of similar neighbors
 
-inline bool like(float a, float b) { return std::abs(a - b) <= alike * std::max(a, b); }
+inline bool similar_length(float a, float b) { return std::abs(a - b) <= length_tolerance * std::max(a, b); }
 
-inline Ray ray_through(const FogBuffer& picture, ivec2 pixel) {
-    return camera_ray(picture.view.camera, picture.fog.size, vec2(pixel) + 0.5f);
+inline Ray ray_through(const FogBuffer& buffer, ivec2 pixel) {
+    return camera_ray(buffer.view.camera, buffer.fog.size, vec2(pixel) + 0.5f);
 }
 
 // The four pixels around a position, with their bilinear weights; clamped to the image.
@@ -43,11 +43,11 @@ struct Mixed {
 };
 
 // Mean of the taps whose rays have about this length; zeroes the other weights and renormalizes the rest.
-inline Mixed mixed(const FogBuffer& picture, Taps& taps, float length) {
+inline Mixed mixed(const FogBuffer& buffer, Taps& taps, float length) {
     Mixed result;
     for (int k = 0; k < 4; ++k) {
-        if (!like(picture.length.at(taps.at[k].x, taps.at[k].y), length)) taps.weight[k] = 0;
-        add(result.fog, picture.fog.at(taps.at[k].x, taps.at[k].y), taps.weight[k]);
+        if (!similar_length(buffer.length.at(taps.at[k].x, taps.at[k].y), length)) taps.weight[k] = 0;
+        add(result.fog, buffer.fog.at(taps.at[k].x, taps.at[k].y), taps.weight[k]);
         result.weight += taps.weight[k];
     }
     if (result.weight > 0) {

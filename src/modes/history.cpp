@@ -57,7 +57,7 @@ bool shines_otherwise(const LightFilter* from, const LightFilter* to) {
 
 bool is_reshaped(const AreaShape* from, const AreaShape* to) {
     if (from == to) return false;
-    if (!from || !to || !is_same(from->picture.get(), to->picture.get())) return true;
+    if (!from || !to || !is_same(from->texture.get(), to->texture.get())) return true;
     return is_turned({from->right, from->up}, {to->right, to->up}) ||
            glm::distance(from->half, to->half) > moved_on * glm::length(to->half);
 }
@@ -73,7 +73,7 @@ bool leaves_trail(const Light& from, const Light& to, vec3 eye) {
 }
 }
 
-int follow(History& history, const View& view, const Snapshot& snapshot, const Settings& settings) {
+int update_history(History& history, const View& view, const Snapshot& snapshot, const Settings& settings) {
     const std::vector<Light>& lights = snapshot.lights;
     const vec3 ambient = mean_ambient(snapshot);
     bool goes_on = history.frames > 0 && history.scene == snapshot.scene && history.view.size == view.size &&

@@ -21,7 +21,7 @@ void add_mean_filters(const Snapshot& snapshot, Limitations& limitations) {
 void add_sampled_filters(const Snapshot& snapshot, Sampled which, double nodes, Limitations& limitations) {
     for (const Light& light : snapshot.lights) {
         if (!light.filter || (which == Sampled::fine_gobos && !filter_steps(light).sampled)) continue;
-        const double texels = whole_angle(light) / nodes / finest_detail(*light.filter);
+        const double texels = cone_angle(light) / nodes / finest_detail(*light.filter);
         limitations.push_back({Severity::info, &limitation::sampled_gobo, Subject::light, light.name, {texels}});
     }
 }

@@ -40,7 +40,7 @@ bool reads(const Mode& mode, std::string_view row) {
     return prefix == row_prefix(mode) || prefix == mode.also_reads;
 }
 
-bool error_is_noise(const Mode& mode) {
+bool is_unbiased(const Mode& mode) {
     return mode.surfaces == Surfaces::own && mode.accuracy == Accuracy::multiple_scattering;
 }
 

@@ -27,17 +27,17 @@ enum class Surfaces { shared, own, post };
 
 // The finished image that a mode with Surfaces::post works on, and what the mode adds to it. All images cover the full
 // frame.
-struct PlainPicture {
+struct PostInput {
     const Image<vec3>& color; // linear Rec.709
     const Image<float>& alpha;
     const Image<float>& depth; // planar z, infinite where there is no surface
 };
-struct Addition {
+struct PostOutput {
     Image<vec3> radiance;
     Image<float> validity;
     std::vector<Image<vec3>> per_light; // if View::fog_parts: parts of radiance, one per light
 };
-using PostFunction = std::function<Addition(const PlainPicture&)>;
+using PostFunction = std::function<PostOutput(const PostInput&)>;
 
 // One step of a mode's quality ladder: assignments "row=value row=value", and a name (empty: shown as its assignments).
 struct Rung {
@@ -60,7 +60,7 @@ struct Mode {
     std::vector<Rung> (*rungs)() = nullptr;                             // from fastest to most accurate
     std::string_view also_reads{};                                      // prefix of another mode's rows that it reads
     std::string_view color{};                                           // in charts
-    bool remembers = false;                                             // whether it uses a History
+    bool uses_history = false;                                          // whether it uses a History
     bool adds_fluence = false;        // whether it can add multiple scattering (fluence.orders)
     bool interactive = false;         // whether it is fast enough for interactive camera moves
     bool samples_soft_lights = false; // whether it samples soft lights: noise instead of bias
@@ -94,5 +94,5 @@ std::string row_prefix(const Mode& mode);
 bool reads(const Mode& mode, std::string_view row);
 
 // Whether the mode is unbiased: its only error is noise, which the variance of an image measures.
-bool error_is_noise(const Mode& mode);
+bool is_unbiased(const Mode& mode);
 }

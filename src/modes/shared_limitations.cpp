@@ -159,7 +159,7 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
     add_float_precision(view, snapshot, limitations);
     const auto is_endless = [](const Medium& medium) { return !is_finite(medium.world_bounds.size()); };
     const Box fog = fog_bounds(snapshot, light_reach(snapshot));
-    if (!has_sources(snapshot) || fog.empty()) return;
+    if (!has_lights(snapshot) || fog.empty()) return;
     const float cell = max_component(fog.size()) / static_cast<float>(settings.resolution);
     const auto add = [&](const LimitationKind& kind, const char* row, double amount = 0,
                          Severity severity = Severity::info) {
@@ -185,7 +185,7 @@ void add_fading(const Snapshot& snapshot, Limitations& limitations) {
             if (before > 0 && now > 0) largest = std::max(largest, std::abs(std::log(now / before)));
             before = now;
         }
-        if (const double off = largest * largest / 24; off > seen_share)
+        if (const double off = largest * largest / 24; off > visible_error)
             limitations.push_back(
                 {Severity::degraded, &limitation::shutter_fades, Subject::light, light.name, {100 * off}});
     }

@@ -103,7 +103,7 @@ void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations);
 void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
 
 // Relative errors that are visible, and that make an image wrong.
-inline constexpr double seen_share = 0.02, wrong_share = 0.5;
+inline constexpr double visible_error = 0.02, wrong_error = 0.5;
 
 // Whether a medium scatters light: not purely emissive, and albedo above 0.
 bool scatters_light(const Medium& medium);

@@ -85,19 +85,19 @@ AreaSample sample_disc(const AreaShape& shape, vec3 point, vec2 u) {
 }
 
 // Moments of a texture's light; positions in units of the half-extents along right and up.
-struct PictureSums {
+struct TextureSums {
     dvec3 mean{0};
     glm::dvec2 middle{0}, square{0}; // centroid and second moment of luminance
 };
 
-PictureSums sums_of(const Gobo& picture) {
-    const Gobo::Level& level = picture.levels[0];
+TextureSums sums_of(const Gobo& texture) {
+    const Gobo::Level& level = texture.levels[0];
     const size_t plane = static_cast<size_t>(level.size.x) * level.size.y;
-    PictureSums sums;
+    TextureSums sums;
     for (int y = 1; y < level.size.y - 1; ++y)
         for (int x = 1; x < level.size.x - 1; ++x) {
             const float* texel = level.values.data() + static_cast<size_t>(y) * level.size.x + x;
-            const dvec3 color = picture.planes == 3 ? dvec3(texel[0], texel[plane], texel[2 * plane]) : dvec3(*texel);
+            const dvec3 color = texture.planes == 3 ? dvec3(texel[0], texel[plane], texel[2 * plane]) : dvec3(*texel);
             const glm::dvec2 at = 1.0 - 2.0 * (glm::dvec2(x, y) - 0.5) / glm::dvec2(level.texels);
             const double light = luminance(vec3(color));
             sums.mean += color, sums.middle += light * at, sums.square += light * at * at;
@@ -109,10 +109,10 @@ PictureSums sums_of(const Gobo& picture) {
 }
 
 // Moves the light to the centroid of the texture's luminance and scales it by the texture's mean.
-void show_picture(AreaShape& shape, Light& light) {
-    const PictureSums sums = sums_of(*shape.picture);
+void apply_texture(AreaShape& shape, Light& light) {
+    const TextureSums sums = sums_of(*shape.texture);
     for (int c = 0; c < 3; ++c) {
-        shape.picture_scale[c] = sums.mean[c] > 0 ? static_cast<float>(1 / sums.mean[c]) : 0;
+        shape.texture_scale[c] = sums.mean[c] > 0 ? static_cast<float>(1 / sums.mean[c]) : 0;
         light.intensity[c] *= static_cast<float>(sums.mean[c]);
     }
     const vec2 middle = vec2(sums.middle) * shape.half;
@@ -138,10 +138,10 @@ float face_area(const AreaShape& shape) {
     return shape.kind == LightKind::rectangle ? 4 * shape.half.x * shape.half.y : pi * shape.half.x * shape.half.x;
 }
 
-void stand_for(const AreaShape& shape, Light& light) {
+void make_punctual(const AreaShape& shape, Light& light) {
     static const std::shared_ptr<const IesProfile> ahead = cosine_profile(false), both = cosine_profile(true);
     auto face = std::make_shared<AreaShape>(shape);
-    if (face->picture) show_picture(*face, light);
+    if (face->texture) apply_texture(*face, light);
     light.area = std::move(face);
     light.kind = LightKind::point, light.radius = std::sqrt(face_area(shape) / pi);
     if (!(light.radius > 0)) light.intensity = vec3(0);
@@ -156,13 +156,13 @@ void stand_for(const AreaShape& shape, Light& light) {
 
 vec3 radiance_of(const Light& light) { return light.intensity / face_area(*light.area); }
 
-vec3 face_picture(const AreaShape& shape, vec3 at) {
-    if (!shape.picture) return vec3(1);
+vec3 face_texture(const AreaShape& shape, vec3 at) {
+    if (!shape.texture) return vec3(1);
     const vec3 off = at - shape.center;
     const vec2 place = 0.5f - 0.5f * vec2(glm::dot(off, shape.right), glm::dot(off, shape.up)) / shape.half;
-    const vec2 edge = 0.5f / shape.picture->levels[0].texels; // the outermost texels extend to the edge
+    const vec2 edge = 0.5f / shape.texture->levels[0].texels; // the outermost texels extend to the edge
     const vec2 inside = glm::clamp(place, edge, 1.0f - edge);
-    return shape.picture_scale * vec3(gobo_at(*shape.picture, inside.x, inside.y));
+    return shape.texture_scale * vec3(gobo_at(*shape.texture, inside.x, inside.y));
 }
 
 AreaSample sample_area(const AreaShape& shape, vec3 point, vec2 u) {
@@ -196,7 +196,7 @@ float area_hit(const AreaShape& shape, const Ray& ray) {
     return inside ? t : infinity;
 }
 
-vec3 rough_arrival(const Light& light, vec3 point) {
+vec3 rough_irradiance(const Light& light, vec3 point) {
     const AreaShape& shape = *light.area;
     if (!is_before(shape, point)) return vec3(0);
     const vec3 offset = point - shape.center;
@@ -206,7 +206,7 @@ vec3 rough_arrival(const Light& light, vec3 point) {
     return light.intensity * (std::min((height + reach) / distance, 1.0f) / (distance * distance));
 }
 
-double far_enough(const AreaShape& shape, double share) {
+double far_distance(const AreaShape& shape, double share) {
     const double size = std::sqrt(face_area(shape) / pi);
     const auto off = [&](double d) {
         return std::abs(face_area(shape) / (d * d) / axial_steradians(shape, d) - 1) > share;

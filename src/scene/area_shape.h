@@ -14,9 +14,9 @@ struct AreaShape {
     bool two_sided = false; // rectangle, disc
     bool visible = true;    // to the camera, from the emitting side
     // Rectangle: texture on the radiance, oriented as a screen shows it to a viewer in front; null = uniform.
-    std::shared_ptr<const Gobo> picture;
-    vec3 picture_scale{1}; // scales the texture's mean to 1; set by stand_for()
-    float spread = 1;      // variance of the emission's position, relative to a uniform face; set by stand_for()
+    std::shared_ptr<const Gobo> texture;
+    vec3 texture_scale{1}; // scales the texture's mean to 1; set by make_punctual()
+    float spread = 1;      // variance of the emission's position, relative to a uniform face; set by make_punctual()
 };
 
 // Area of the face projected along its axis, m².
@@ -25,13 +25,13 @@ float face_area(const AreaShape& shape);
 // Turns `light`, whose position, intensity (candela along the axis) and scales are set, into a point light or spot that
 // approximates the shape: at the centroid of its emission, of equal area, with Lambert's cosine and the texture's mean
 // color. A shape without area becomes dark.
-void stand_for(const AreaShape& shape, Light& light);
+void make_punctual(const AreaShape& shape, Light& light);
 
 // Radiance of an area light in nits, the mean over its face.
 vec3 radiance_of(const Light& light);
 
 // The texture's factor on that radiance at a point of the face; 1 without a texture.
-vec3 face_picture(const AreaShape& shape, vec3 at);
+vec3 face_texture(const AreaShape& shape, vec3 at);
 
 // A sampled direction towards a point of the face.
 struct AreaSample {
@@ -51,9 +51,9 @@ float area_steradians(const AreaShape& shape, vec3 point, vec3 direction, float 
 float area_hit(const AreaShape& shape, const Ray& ray);
 
 // Rough estimate of the irradiance at a point: never 0 where any light arrives, 0 behind the face.
-vec3 rough_arrival(const Light& light, vec3 point);
+vec3 rough_irradiance(const Light& light, vec3 point);
 
-// Distance from the center along the axis, in meters, within which the relative error of the stand_for() approximation
-// exceeds `share` for the light that falls on fog.
-double far_enough(const AreaShape& shape, double share);
+// Distance from the center along the axis, in meters, within which the relative error of the make_punctual()
+// approximation exceeds `share` for the light that falls on fog.
+double far_distance(const AreaShape& shape, double share);
 }

@@ -36,7 +36,7 @@ bool is_grey(const Image<vec3>& image) {
 }
 
 namespace {
-std::shared_ptr<Gobo> gobo_of(const ReducedPicture& picture) {
+std::shared_ptr<Gobo> gobo_of(const ReducedImage& picture) {
     auto gobo = std::make_shared<Gobo>();
     gobo->planes = is_grey(picture.image) ? 1 : 3;
     gobo->aspect = static_cast<float>(picture.size.y) / static_cast<float>(picture.size.x);
@@ -55,7 +55,7 @@ std::shared_ptr<Gobo> gobo_of(const ReducedPicture& picture) {
 }
 
 std::shared_ptr<Gobo> make_gobo(std::string_view bytes, ColorSpace space, std::string_view where, std::string& note) {
-    const ReducedPicture picture =
+    const ReducedImage picture =
         decode_reduced(bytes, space == ColorSpace::linear, largest_gobo_side, reduced_gobo_side, where, note);
     if (picture.factor > 1)
         note += (note.empty() ? "" : "; ") + std::to_string(picture.size.x) + "x" + std::to_string(picture.size.y) +

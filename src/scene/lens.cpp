@@ -15,9 +15,9 @@ vec2 disc_point(vec2 u) {
 }
 
 // Picks one of the triangles between the center and two adjacent corners, and a point in it.
-vec2 polygon_point(int corners, float turn, vec2 u) {
+vec2 polygon_point(int corners, float rotation, vec2 u) {
     const float place = u.x * static_cast<float>(corners), first = std::min(std::floor(place), float(corners - 1));
-    const float step = 2 * pi / static_cast<float>(corners), angle = turn + step * first;
+    const float step = 2 * pi / static_cast<float>(corners), angle = rotation + step * first;
     const float outwards = std::sqrt(place - first);
     const vec2 a(std::cos(angle), std::sin(angle)), b(std::cos(angle + step), std::sin(angle + step));
     return outwards * glm::mix(a, b, u.y);
@@ -25,7 +25,7 @@ vec2 polygon_point(int corners, float turn, vec2 u) {
 }
 
 vec2 aperture_point(const Lens& lens, vec2 u) {
-    return lens.radius * (lens.blades >= 3 ? polygon_point(lens.blades, lens.turn, u) : disc_point(u));
+    return lens.radius * (lens.blades >= 3 ? polygon_point(lens.blades, lens.rotation, u) : disc_point(u));
 }
 
 Ray lens_ray(const Camera& camera, ivec2 size, vec2 pixel, vec2 on_aperture) {

@@ -9,14 +9,14 @@ struct Lens {
     float radius = 0;       // of the aperture, meters; 0 = a pinhole
     float focus = infinity; // distance to the plane of focus along the viewing direction, meters
     int blades = 0;         // 3 or more: the aperture is a regular polygon inscribed in its circle; fewer: it is round
-    float turn = 0; // radians from the right to the first corner, counterclockwise as seen from behind the camera
+    float rotation = 0; // radians from the right to the first corner, counterclockwise as seen from behind the camera
 
     explicit operator bool() const { return radius > 0; }
 };
 
 // Fields in the order of cache files.
 template<class Visit> void fields(Lens& lens, Visit& visit) {
-    visit(lens.radius), visit(lens.focus), visit(lens.blades), visit(lens.turn);
+    visit(lens.radius), visit(lens.focus), visit(lens.blades), visit(lens.rotation);
 }
 
 // Samples a point of the aperture uniformly by area from u in [0,1)²: meters to the right and up.

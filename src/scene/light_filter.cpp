@@ -25,7 +25,7 @@ dvec3 filtered(const LightFilter& filter, dvec3 direction) {
         return dvec3(glm::dot(direction, dvec3(axes.right)), glm::dot(direction, dvec3(axes.up)), along);
     };
     dvec3 factors(1);
-    if (filter.profile) factors *= profile_share(*filter.profile, across(filter.profile_axes));
+    if (filter.profile) factors *= profile_factor(*filter.profile, across(filter.profile_axes));
     if (!filter.gobo) return factors;
     if (!(along > 0)) return dvec3(0);
     const dvec3 at = across(filter.gobo_axes) / along;
@@ -68,9 +68,9 @@ FactorMean mean_factor(const Light& light) {
     return {mean, static_cast<float>(std::sqrt(std::max(squares / all - brightness * brightness, 0.0)) / brightness)};
 }
 
-float whole_angle(const Light& light) { return has_cone(light) ? 2 * light.outer_cone : 2 * pi; }
+float cone_angle(const Light& light) { return has_cone(light) ? 2 * light.outer_cone : 2 * pi; }
 
-int blurred_level(const LightFilter& filter, float angle) {
+int gobo_mip_level(const LightFilter& filter, float angle) {
     return filter.gobo ? gobo_level(*filter.gobo, angle / (2 * std::atan(filter.gobo_half.x))) : 0;
 }
 }

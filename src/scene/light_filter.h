@@ -42,8 +42,8 @@ struct FactorMean {
 FactorMean mean_factor(const Light& light);
 
 // Full angle of the light's cone, radians; 2π without a cone.
-float whole_angle(const Light& light);
+float cone_angle(const Light& light);
 
 // The gobo's mip level for lookups this angle (radians) apart; 0 without a gobo.
-int blurred_level(const LightFilter& filter, float angle);
+int gobo_mip_level(const LightFilter& filter, float angle);
 }

@@ -60,7 +60,8 @@ Interval<double> inside_ball(dvec3 center, double radius, dvec3 origin, dvec3 di
 
 Interval<float> light_reach(const Light& light, const Ray& ray, Interval<float> stretch) {
     const Interval<double> reach = light_reach(light, dvec3(ray.origin), dvec3(ray.direction));
-    const Interval<float> result = common(stretch, {static_cast<float>(reach.low), static_cast<float>(reach.high)});
+    const Interval<float> result =
+        intersection(stretch, {static_cast<float>(reach.low), static_cast<float>(reach.high)});
     return result.empty() ? Interval<float>{} : result;
 }
 }

@@ -57,7 +57,7 @@ struct CameraSource {
     Keyed<float> aperture{0.0f};       // radius of the lens, meters; 0 = a pinhole
     std::optional<Keyed<float>> focus; // meters along the viewing direction; none: the target's distance
     int blades = 0;
-    Keyed<float> blade_turn{0.0f}; // radians
+    Keyed<float> blade_rotation{0.0f}; // radians
     Shutter shutter;
     std::string entry; // JSON pointer of its entry in the scene file; empty = none
 };
@@ -75,7 +75,7 @@ struct GoboSource {
     std::shared_ptr<const Gobo> still; // null: a sequence with one image per frame
     FileSequence sequence;
     ColorSpace space = ColorSpace::srgb;
-    Keyed<float> turn{0.0f}; // radians, counterclockwise as seen from the light
+    Keyed<float> rotation{0.0f}; // radians, counterclockwise as seen from the light
     Keyed<float> scale{1.0f};
 };
 
@@ -87,12 +87,12 @@ struct LightSource {
     Keyed<vec3> color{vec3(1)};
     Keyed<float> intensity{1.0f}; // in the unit below
     LightUnit unit = LightUnit::native;
-    float efficacy = 0;              // lumens per watt, for LightUnit::watt
-    bool whole_sphere = false;       // a spot's lumens are spread over the full sphere, and only its cone is emitted
-    Keyed<float> exposure{0.0f};     // stops
-    Keyed<float> temperature{0.0f};  // kelvin, multiplies the color; 0 = none
-    Keyed<vec3> up{vec3(0, 1, 0)};   // of rectangle, profile and gobo, if the light has no node
-    Keyed<float> profile_turn{0.0f}; // radians, counterclockwise as seen from the light
+    float efficacy = 0;             // lumens per watt, for LightUnit::watt
+    bool whole_sphere = false;      // a spot's lumens are spread over the full sphere, and only its cone is emitted
+    Keyed<float> exposure{0.0f};    // stops
+    Keyed<float> temperature{0.0f}; // kelvin, multiplies the color; 0 = none
+    Keyed<vec3> up{vec3(0, 1, 0)};  // of rectangle, profile and gobo, if the light has no node
+    Keyed<float> profile_rotation{0.0f};       // radians, counterclockwise as seen from the light
     std::shared_ptr<const IesProfile> profile; // null = none
     std::optional<GoboSource> gobo;
     Keyed<float> volume_scale{1.0f}, surface_scale{1.0f};

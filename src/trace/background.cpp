@@ -26,8 +26,8 @@ vec2 lat_long_position(vec3 direction, float rotation) {
     return {0.5f + turn - std::floor(0.5f + turn), std::acos(std::clamp(direction.y, -1.0f, 1.0f)) / pi};
 }
 
-BackgroundNow background_at(const Background& background, double seconds) {
-    BackgroundNow now;
+BackgroundState background_at(const Background& background, double seconds) {
+    BackgroundState now;
     now.stated = background.stated;
     now.kind = background.kind;
     now.color = background.color.at(seconds);
@@ -39,12 +39,12 @@ BackgroundNow background_at(const Background& background, double seconds) {
     return now;
 }
 
-bool has_background(const BackgroundNow& background) {
+bool has_background(const BackgroundState& background) {
     const vec3 brightest = glm::max(background.color, glm::max(background.zenith, background.ground));
     return background.stated || background.image || max_component(brightest) > 0;
 }
 
-vec3 background_radiance(const BackgroundNow& background, vec3 direction, vec2 screen) {
+vec3 background_radiance(const BackgroundState& background, vec3 direction, vec2 screen) {
     switch (background.kind) {
     case BackgroundKind::color:
         return background.color * background.intensity;

@@ -24,13 +24,13 @@ float recipe_speed(const FogRecipe& recipe) {
     return std::max(smoke, flames) + 2 * pi * std::abs(recipe.swirl * recipe.swirl_speed);
 }
 
-FogRecipe grown_recipe(const MediumSource& source) {
+FogRecipe medium_recipe(const MediumSource& source) {
     FogRecipe recipe = *source.recipe;
     if (source.voxel_size > 0) recipe.voxel_size = source.voxel_size;
     return recipe;
 }
 
-std::string growth_key(const FogRecipe& recipe, double seconds) {
+std::string recipe_key(const FogRecipe& recipe, double seconds) {
     std::string key = "recipe " + recipe_hash(recipe);
     if (recipe_speed(recipe) > 0) key += formatted(" at %a", seconds);
     return key;
@@ -79,22 +79,22 @@ FogSource source_of(StoredFog fog, std::string key, const std::string& content) 
 }
 
 FogSource grown(const MediumSource& source, double seconds, CacheFolder* files, const FogSource& before) {
-    const FogRecipe recipe = grown_recipe(source);
-    const std::string key = growth_key(recipe, seconds);
+    const FogRecipe recipe = medium_recipe(source);
+    const std::string key = recipe_key(recipe, seconds);
     if (key == before.key) return before;
-    const auto grow_fog = [&] { return stored_fog(grow(recipe, seconds), {}); };
-    return source_of(found_or_made<StoredFog>(files, "bricks", key, grow_fog), key, files ? key : "");
+    const auto grow_fog = [&] { return stored_fog(generate(recipe, seconds), {}); };
+    return source_of(load_or_build<StoredFog>(files, "bricks", key, grow_fog), key, files ? key : "");
 }
 
 // Shared arguments for reading a medium's files.
-struct Reading {
+struct ReadContext {
     MissingFrame missing;
     CacheFolder* files;
     std::vector<std::string>& notes;
 };
 
 // The fog in a frame's file, taken from `known` if it is there.
-FogSource read(const MediumSource& source, int frame, const Reading& reading, std::span<const FogSource> known) {
+FogSource read(const MediumSource& source, int frame, const ReadContext& reading, std::span<const FogSource> known) {
     const auto file = sequence_file(source.sequence, frame, reading.missing);
     if (!file) return {};
     const std::string key = file_key(*file) + source.density_grid + source.density_map.text();
@@ -104,7 +104,7 @@ FogSource read(const MediumSource& source, int frame, const Reading& reading, st
     const std::string content =
         files ? "file " + file_hash(*file, *files->inputs) + " " + source.density_grid + source.density_map.text()
               : std::string();
-    const StoredFog fog = found_or_made<StoredFog>(files, "bricks", content, [&] {
+    const StoredFog fog = load_or_build<StoredFog>(files, "bricks", content, [&] {
         VdbReadReport report;
         const SparseVolume volume = read_vdb(*file, source.density_grid, source.density_map, infinity, &report);
         return within(file->string(), [&] { return stored_fog(volume, report.summary()); });
@@ -116,7 +116,7 @@ FogSource read(const MediumSource& source, int frame, const Reading& reading, st
 std::string content_of(const FogSource& source) { return source.bricks ? source.bricks->content : "none"; }
 
 // Fog at a time between frames: two files blended, or one moved by its velocities. Stores the files read in `frames`.
-FogSource read_between(const MediumSource& source, const SequenceTime& time, const Reading& reading,
+FogSource read_between(const MediumSource& source, const SequenceTime& time, const ReadContext& reading,
                        const FogSource& before, std::span<const FogSource> known, FogFrames& frames) {
     const auto of_frame = [&](int frame) {
         FogSource fog = read(source, frame, reading, known);
@@ -132,7 +132,7 @@ FogSource read_between(const MediumSource& source, const SequenceTime& time, con
     std::string content;
     if (reading.files)
         content = "file " + content_hash(content_of(here) + "\n" + content_of(next) + "\n" + time.content());
-    const StoredFog fog = found_or_made<StoredFog>(reading.files, "bricks", content, [&] {
+    const StoredFog fog = load_or_build<StoredFog>(reading.files, "bricks", content, [&] {
         return stored_fog(volume_at(time, {here.bricks, here.index_to_world}, {next.bricks, next.index_to_world},
                                     named("medium", source.name)),
                           {});
@@ -159,7 +159,7 @@ struct MovingFiles {
 
 FogSource fog_source(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
                      const FogSource& before, MovingFiles& files, Snapshot& snapshot) {
-    const Reading reading{missing, snapshot.files.get(), snapshot.notes};
+    const ReadContext reading{missing, snapshot.files.get(), snapshot.notes};
     std::vector<FogSource> known{before};
     if (files.before) known.insert(known.end(), files.before->densities.begin(), files.before->densities.end());
     FogSource result;
@@ -182,14 +182,14 @@ void add_analytic(const Scene& scene, const MediumSource& source, double seconds
     medium.density.kind = source.kind == MediumKind::height ? DensityKind::height : DensityKind::homogeneous;
     medium.density.bounds = source.bounds;
     medium.density.world_to_local = glm::inverse(matrix);
-    medium.world_bounds = moved_box(matrix, source.bounds);
+    medium.world_bounds = transform_box(matrix, source.bounds);
     medium.density.height_base = source.height_base.at(seconds),
     medium.density.height_falloff = source.height_falloff.at(seconds);
 }
 }
 
 // Interval arithmetic per axis. 0 · infinity counts as 0, as a zero coefficient means that the axis has no effect.
-Box moved_box(const mat4& matrix, const Box& box) {
+Box transform_box(const mat4& matrix, const Box& box) {
     Box result{vec3(matrix[3]), vec3(matrix[3])};
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {

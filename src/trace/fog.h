@@ -15,13 +15,13 @@ inline constexpr float min_extinction = 1e-20f;
 void add_media(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing, Snapshot& snapshot);
 
 // The recipe that a medium is generated from, and a key of its state at a moment: equal keys mean equal fog.
-FogRecipe grown_recipe(const MediumSource& source);
-std::string growth_key(const FogRecipe& recipe, double seconds);
+FogRecipe medium_recipe(const MediumSource& source);
+std::string recipe_key(const FogRecipe& recipe, double seconds);
 
 // Approximate speed at which a recipe's fog changes, meters per second: by wind or rising fire, by noise gradients that
 // evolve through one cell per turn, and by swirl. 0 = static fog, generated once.
 float recipe_speed(const FogRecipe& recipe);
 
 // The smallest box around an affinely transformed box; unbounded directions stay unbounded.
-Box moved_box(const mat4& matrix, const Box& box);
+Box transform_box(const mat4& matrix, const Box& box);
 }

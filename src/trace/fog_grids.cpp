@@ -49,7 +49,7 @@ StoredProperty read_property(const std::filesystem::path& file, const GridSource
         const ColorVolume color = read_color_vdb(file, source.grids, source.map, most, &report);
         within(file.string(), [&] {
             for (const SparseVolume& channel : color.channels) add_pool(channel, property);
-            add_pool(color.there, property);
+            add_pool(color.coverage, property);
         });
     }
     property.note = report.summary();
@@ -62,7 +62,7 @@ std::string grids_text(const GridSource& source) {
 }
 
 // Shared arguments for reading properties.
-struct Reading {
+struct ReadContext {
     const std::string& medium; // its name
     Moment moment;
     const SequenceTime& time;
@@ -78,7 +78,7 @@ GridProperty property_of(StoredProperty stored, std::string key, Quantity quanti
     std::vector<PlacedBricks> pools;
     for (size_t i = 0; i < stored.pools.size(); ++i)
         pools.push_back({std::make_shared<const BrickPool>(std::move(stored.pools[i])), stored.places[i]});
-    if (quantity != Quantity::number) property.there = pools.back(), pools.pop_back();
+    if (quantity != Quantity::number) property.coverage = pools.back(), pools.pop_back();
     for (size_t c = 0; c < 3; ++c) property.channels[c] = pools[pools.size() == 3 ? c : 0];
     return property;
 }
@@ -89,7 +89,7 @@ struct FileProperty {
     std::string content;
 };
 
-FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, const Reading& reading,
+FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, const ReadContext& reading,
                         std::span<const GridProperty> known) {
     const auto file = sequence_file(source.sequence, frame, reading.missing);
     if (!file) return {};
@@ -100,7 +100,7 @@ FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, 
     for (const GridProperty& one : known)
         if (one.key == key) return {one, content};
     StoredProperty stored =
-        found_or_made<StoredProperty>(files, "bricks", content, [&] { return read_property(*file, source, quantity); });
+        load_or_build<StoredProperty>(files, "bricks", content, [&] { return read_property(*file, source, quantity); });
     if (!stored.note.empty()) reading.snapshot.notes.push_back(file->filename().string() + ": " + stored.note);
     return {property_of(std::move(stored), key, quantity), content};
 }
@@ -112,12 +112,12 @@ StoredProperty property_between(const SequenceTime& time, const GridProperty& he
     const auto grey = [](const GridProperty& one) { return one.channels[0].bricks == one.channels[1].bricks; };
     const size_t channels = grey(here) && grey(next) ? 1 : 3;
     for (size_t c = 0; c < channels; ++c) add_pool(volume_at(time, here.channels[c], next.channels[c], what), property);
-    if (quantity != Quantity::number) add_pool(volume_at(time, here.there, next.there, what), property);
+    if (quantity != Quantity::number) add_pool(volume_at(time, here.coverage, next.coverage, what), property);
     return property;
 }
 
 // The property at the moment. `number`: its index in FogFrames::properties.
-GridProperty read(const std::optional<GridSource>& source, size_t number, Quantity quantity, const Reading& reading,
+GridProperty read(const std::optional<GridSource>& source, size_t number, Quantity quantity, const ReadContext& reading,
                   const GridProperty* before) {
     if (!source) return {};
     const SequenceTime& time = reading.time;
@@ -142,22 +142,22 @@ GridProperty read(const std::optional<GridSource>& source, size_t number, Quanti
     std::string content;
     if (files) content = "property " + content_hash(here.content + "\n" + next.content + "\n" + time.content());
     const std::string what = named("medium", reading.medium);
-    return property_of(found_or_made<StoredProperty>(
+    return property_of(load_or_build<StoredProperty>(
                            files, "bricks", content,
                            [&] { return property_between(time, here.property, next.property, quantity, what); }),
                        key, quantity);
 }
 
 // The temperature of a recipe's fire.
-GridProperty grown_temperature(const MediumSource& source, const Reading& reading, const GridProperty* before) {
-    const FogRecipe recipe = grown_recipe(source);
+GridProperty grown_temperature(const MediumSource& source, const ReadContext& reading, const GridProperty* before) {
+    const FogRecipe recipe = medium_recipe(source);
     const double seconds = reading.moment.grown.value_or(reading.moment.seconds);
     GridProperty property;
-    property.key = "temperature of " + growth_key(recipe, seconds);
+    property.key = "temperature of " + recipe_key(recipe, seconds);
     if (before && before->key == property.key) return *before;
-    StoredProperty stored = found_or_made<StoredProperty>(reading.snapshot.files.get(), "bricks", property.key, [&] {
+    StoredProperty stored = load_or_build<StoredProperty>(reading.snapshot.files.get(), "bricks", property.key, [&] {
         StoredProperty made;
-        add_pool(grow_temperature(recipe, seconds), made);
+        add_pool(generate_temperature(recipe, seconds), made);
         return made;
     });
     property.channels.fill({std::make_shared<const BrickPool>(std::move(stored.pools[0])), stored.places[0]});
@@ -239,7 +239,7 @@ public:
         if (color_) return color_;
         auto copy = std::make_shared<AlbedoField>(*field);
         for (auto& pool : copy->color) pool = (*this)(pool);
-        copy->there = (*this)(copy->there);
+        copy->coverage = (*this)(copy->coverage);
         return color_ = copy;
     }
     EmissionPart operator()(const EmissionPart& part) {
@@ -263,7 +263,7 @@ void place_grids(const mat4& matrix, const FogSource& fog, MediumGrids& grids) {
     Placement placement(matrix);
     for (const GridProperty* property : {&grids.albedo, &grids.emission, &grids.temperature, &grids.flame}) {
         for (const PlacedBricks& channel : property->channels) placement.add(channel);
-        placement.add(property->there);
+        placement.add(property->coverage);
     }
     if (fog.bricks) placement.add(fog.bricks, fog.placed);
     grids.placed_color = placement(grids.color);
@@ -291,7 +291,7 @@ bool has_grids(const MediumSource& source) {
 std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, const SequenceTime& time,
                                                 MissingFrame missing, const mat4& matrix, const FogSource& fog,
                                                 const MediumGrids* before, FogFrames& frames, Snapshot& snapshot) {
-    const Reading reading{source.name, moment, time, missing, before, frames, snapshot};
+    const ReadContext reading{source.name, moment, time, missing, before, frames, snapshot};
     auto grids = std::make_shared<MediumGrids>();
     grids->albedo = read(source.albedo_grid, 0, Quantity::share, reading, before ? &before->albedo : nullptr);
     grids->emission = read(source.emission_grid, 1, Quantity::color, reading, before ? &before->emission : nullptr);
@@ -305,7 +305,7 @@ std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Mome
         if (grids->is_placed && grids->matrix == matrix) return grids;
     } else {
         if (grids->albedo) {
-            AlbedoField color{bricks_of(grids->albedo), grids->albedo.there.bricks};
+            AlbedoField color{bricks_of(grids->albedo), grids->albedo.coverage.bricks};
             const MeanFactor mean = mean_factor(color, {fog.bricks, fog.index_to_world});
             color.spread = mean.spread, grids->mean_factor = mean.mean;
             grids->color = std::make_shared<const AlbedoField>(std::move(color));

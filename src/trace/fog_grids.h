@@ -14,7 +14,7 @@ struct SequenceTime;
 struct GridProperty {
     std::string key;                      // empty = nothing to reuse
     std::array<PlacedBricks, 3> channels; // the same pool three times for a gray grid
-    PlacedBricks there;                   // colors only: 1 at voxels that have one
+    PlacedBricks coverage;                // colors only: 1 at voxels that have one
     explicit operator bool() const { return channels[0].bricks != nullptr; }
 };
 

@@ -16,10 +16,10 @@ bool same(const std::weak_ptr<const void>& a, const std::weak_ptr<const void>& b
     return !a.owner_before(b) && !b.owner_before(a);
 }
 
-std::shared_ptr<CachedThing> found(FrameCache* kept, std::type_index type, const CacheKey& key) {
+std::shared_ptr<FrameCacheEntry> found(FrameCache* kept, std::type_index type, const CacheKey& key) {
     if (!kept) return nullptr;
     const std::scoped_lock lock(kept->mutex);
-    for (const std::shared_ptr<CachedThing>& thing : kept->things)
+    for (const std::shared_ptr<FrameCacheEntry>& thing : kept->entries)
         if (thing->type == type && thing->key == key) return thing;
     return nullptr;
 }
@@ -39,7 +39,7 @@ CacheKey& CacheKey::add(const View& view) {
     const Camera& camera = view.camera;
     add(camera.position).add(camera.right).add(camera.up).add(camera.forward).add(camera.vertical_fov);
     add(camera.ortho_height).add(camera.near).add(camera.far);
-    if (const Lens& lens = camera.lens) add(lens.radius).add(lens.focus).add(lens.blades).add(lens.turn);
+    if (const Lens& lens = camera.lens) add(lens.radius).add(lens.focus).add(lens.blades).add(lens.rotation);
     return add(view.size).add(view.filter).add(view.filter_radius);
 }
 
@@ -60,18 +60,18 @@ std::string content_of(const CacheKey& key, const CacheFolder& folder) {
     return text;
 }
 
-std::shared_ptr<CachedThing> find_cached(const Snapshot& snapshot, std::type_index type, CacheKey key) {
-    FrameCache *own = snapshot.cache.get(), *before = snapshot.cache_before.get();
-    std::shared_ptr<CachedThing> thing = found(before, type, key);
+std::shared_ptr<FrameCacheEntry> find_cached(const Snapshot& snapshot, std::type_index type, CacheKey key) {
+    FrameCache *own = snapshot.cache.get(), *before = snapshot.previous_cache.get();
+    std::shared_ptr<FrameCacheEntry> thing = found(before, type, key);
     if (!own && thing) return thing;
-    if (!thing) thing.reset(new CachedThing{type, std::move(key), {}, nullptr});
+    if (!thing) thing.reset(new FrameCacheEntry{type, std::move(key), {}, nullptr});
     if (!own) return thing;
 
     // Another thread may have added it first.
     const std::scoped_lock lock(own->mutex);
-    for (const std::shared_ptr<CachedThing>& known : own->things)
+    for (const std::shared_ptr<FrameCacheEntry>& known : own->entries)
         if (known->type == type && known->key == thing->key) return known;
-    own->things.push_back(thing);
+    own->entries.push_back(thing);
     return thing;
 }
 }

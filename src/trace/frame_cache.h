@@ -60,7 +60,7 @@ struct CacheKey {
     bool operator==(const CacheKey& other) const;
 };
 
-struct CachedThing {
+struct FrameCacheEntry {
     std::type_index type;
     CacheKey key;
     std::once_flag made;
@@ -70,11 +70,11 @@ struct CachedThing {
 // Entries of one frame.
 struct FrameCache {
     std::mutex mutex;
-    std::vector<std::shared_ptr<CachedThing>> things;
+    std::vector<std::shared_ptr<FrameCacheEntry>> entries;
 };
 
 // The entry with this type and key in the snapshot's frame or the previous one, or a new empty one. Thread-safe.
-std::shared_ptr<CachedThing> find_cached(const Snapshot& snapshot, std::type_index type, CacheKey key);
+std::shared_ptr<FrameCacheEntry> find_cached(const Snapshot& snapshot, std::type_index type, CacheKey key);
 
 // The folder of the snapshot's plan, null if there is none; and a key as text that is the same in every process, empty
 // if the content of an object is unknown.
@@ -85,11 +85,11 @@ std::string content_of(const CacheKey& key, const CacheFolder& folder);
 // Snapshots made by hand cache nothing. `what` names the entry in messages and files.
 template<class Make> auto cached(const Snapshot& snapshot, const char* what, CacheKey key, const Make& make) {
     using T = decltype(make());
-    const std::shared_ptr<CachedThing> thing = find_cached(snapshot, typeid(T), std::move(key));
+    const std::shared_ptr<FrameCacheEntry> thing = find_cached(snapshot, typeid(T), std::move(key));
     std::call_once(thing->made, [&] {
         CacheFolder* folder = cache_folder(snapshot);
         const std::string content = folder ? content_of(thing->key, *folder) : std::string();
-        thing->value = std::make_shared<const T>(found_or_made<T>(folder, what, content, make));
+        thing->value = std::make_shared<const T>(load_or_build<T>(folder, what, content, make));
     });
     return std::static_pointer_cast<const T>(thing->value);
 }

@@ -90,16 +90,16 @@ bool near_picture(vec2 at, ivec2 size) {
 bool changes(const Scene& scene, const CameraSource& camera) {
     return !camera.position.constant() || !camera.target.constant() || !camera.up.constant() ||
            !camera.vertical_fov.constant() || !camera.aperture.constant() ||
-           (camera.focus && !camera.focus->constant()) || !camera.blade_turn.constant() ||
+           (camera.focus && !camera.focus->constant()) || !camera.blade_rotation.constant() ||
            is_moving(scene, camera.node);
 }
 
 bool changes(const Scene& scene, const LightSource& light) {
     const auto all = [](const auto&... values) { return (values.constant() && ...); };
-    if (light.gobo && !all(light.gobo->turn, light.gobo->scale)) return true;
+    if (light.gobo && !all(light.gobo->rotation, light.gobo->scale)) return true;
     return is_moving(scene, light.node) ||
            !all(light.position, light.direction, light.color, light.intensity, light.exposure, light.temperature,
-                light.up, light.profile_turn, light.volume_scale, light.surface_scale, light.inner_cone,
+                light.up, light.profile_rotation, light.volume_scale, light.surface_scale, light.inner_cone,
                 light.outer_cone, light.radius, light.angle);
 }
 
@@ -129,7 +129,7 @@ double seconds_of(const Scene& scene, int frame, const Shutter& shutter, float s
 }
 }
 
-float motion_on_picture(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter) {
+float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter) {
     std::vector<Box> meshes;
     for (const Mesh& mesh : scene.meshes) meshes.push_back(posed_bounds(mesh, {}));
     const float extent = extent_of(scene, seconds_of(scene, frame, shutter, 0.5f));
@@ -176,44 +176,44 @@ template<class Counts> double count_triangles(const Scene& scene, const Counts& 
 }
 
 // How many copies of a light's shadow volumes are in memory at most: the volumes themselves, and views of them.
-int copies_of_volumes(const LightSource& light, double seconds, bool keeps_pictures) {
-    if (!keeps_pictures) return 1;
+int copies_of_volumes(const LightSource& light, double seconds, bool keeps_images) {
+    if (!keeps_images) return 1;
     return light.radius.at(seconds) > 0 ? 5 : 2;
 }
 
 // `everything`: all cached data of lights is rebuilt at each moment.
-double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool everything, bool keeps_pictures) {
+double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool everything, bool keeps_images) {
     const bool voxels = std::ranges::any_of(scene.media, [](const MediumSource& medium) {
         return medium.kind == MediumKind::noise || medium.kind == MediumKind::vdb;
     });
     const double all = count_triangles(scene, [](const Instance&) { return true; });
     const double moving = count_triangles(scene, [&](const Instance& one) { return is_moving(scene, one); });
-    double bytes = (keeps_pictures ? bytes_per_pixel * pixels : 0) + bytes_per_triangle * moving, volumes = 0;
+    double bytes = (keeps_images ? bytes_per_pixel * pixels : 0) + bytes_per_triangle * moving, volumes = 0;
     for (const LightSource& light : scene.lights) {
         const bool anew = everything || changes(scene, light);
         if (anew && voxels) bytes += bytes_of_grid;
         if (!anew && moving == 0) continue;
         const float cone = has_cone(light) ? light.outer_cone.at(seconds) : pi;
         const double share = cone < pi / 4 ? std::tan(cone) : 1; // a narrow beam covers fewer surfaces and pixels
-        volumes += share * copies_of_volumes(light, seconds, keeps_pictures) * bytes_per_shadow_triangle * all;
-        if (keeps_pictures) bytes += share * bytes_per_beam_pixel * pixels;
+        volumes += share * copies_of_volumes(light, seconds, keeps_images) * bytes_per_shadow_triangle * all;
+        if (keeps_images) bytes += share * bytes_per_beam_pixel * pixels;
     }
     return bytes + (volumes <= max_bytes_of_shadows ? volumes : 0); // above the limit, shadows are found in other ways
 }
 }
 
-int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter, bool keeps_pictures,
-                  int finer) {
+int auto_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter, bool keeps_images,
+                 int finer) {
     if (!changes_while_open(scene, camera, shutter)) return 1;
-    float wanted = motion_on_picture(scene, camera, size, frame, shutter) / spacing;
+    float wanted = image_motion(scene, camera, size, frame, shutter) / spacing;
     if (std::ranges::any_of(scene.media, [](const MediumSource& medium) { return medium.velocity.has_value(); }))
         wanted = std::max(wanted, float(moments_of_velocities));
-    const float most = static_cast<float>(max_usual_moments);
+    const float most = static_cast<float>(max_auto_moments);
     const int count = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::min(wanted, most) + 0.999f)));
     const bool everything = changes(scene, scene.cameras[static_cast<size_t>(camera)]) ||
                             std::ranges::any_of(scene.media, [](const auto& medium) { return changes(medium); });
     const double bytes = bytes_of_moment(scene, seconds_of(scene, frame, shutter, 0.5f),
-                                         static_cast<double>(size.x) * size.y, everything, keeps_pictures);
+                                         static_cast<double>(size.x) * size.y, everything, keeps_images);
     const double affordable = std::clamp(max_bytes / std::max(bytes, 1.0), double(fewest_moments), double(most));
     return std::min(finer * std::max(count, fewest_moments),
                     static_cast<int>(std::bit_floor(static_cast<unsigned>(affordable))));

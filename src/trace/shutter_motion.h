@@ -7,12 +7,12 @@ struct MediumSource;
 struct Scene;
 struct Shutter;
 
-inline constexpr int max_usual_moments = 512, max_moments = 1024; // chosen automatically; on request
-inline constexpr int moments_of_velocities = 32;                  // minimum for fog that velocities move
+inline constexpr int max_auto_moments = 512, max_moments = 1024; // chosen automatically; on request
+inline constexpr int moments_of_velocities = 32;                 // minimum for fog that velocities move
 
 // Distance in pixels that the fastest light, beam, surface or medium travels across the image, camera motion included.
 // Estimated from a few points of each; points that stay out of view do not count.
-float motion_on_picture(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter);
+float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter);
 
 // Whether a medium changes within a frame: keyframes, moving noise, velocities or blended files. One file per frame
 // alone does not count.
@@ -22,9 +22,9 @@ bool changes(const MediumSource& medium);
 bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter);
 
 // Number of moments for motion blur, a power of two: enough that they lie at most 0.75 pixels apart, at least 4 if
-// anything changes, else 1; times `finer` for an error target; at most max_usual_moments. Fewer, down to 4, if they
-// would take more than 8 GiB; `keeps_pictures`: the mode stores data per pixel and light. Fog moved by velocities gets
+// anything changes, else 1; times `finer` for an error target; at most max_auto_moments. Fewer, down to 4, if they
+// would take more than 8 GiB; `keeps_images`: the mode stores data per pixel and light. Fog moved by velocities gets
 // at least moments_of_velocities, as its speed is in files that are not read yet.
-int usual_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter,
-                  bool keeps_pictures = false, int finer = 1);
+int auto_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter,
+                 bool keeps_images = false, int finer = 1);
 }

@@ -75,8 +75,8 @@ void add_face(const LightSource& source, double seconds, vec3 up, Light& light) 
         shape.half = 0.5f * vec2(source.width.at(seconds), source.height.at(seconds));
     shape.half = glm::max(shape.half, vec2(0));
     shape.two_sided = source.two_sided, shape.visible = source.visible;
-    if (light.filter) shape.picture = light.filter->gobo;
-    stand_for(shape, light);
+    if (light.filter) shape.texture = light.filter->gobo;
+    make_punctual(shape, light);
 }
 
 bool shines(const Light& light) {
@@ -168,9 +168,9 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     const double start = steady_seconds();
     snapshot.occluders = Occluders::make(scene, moment.seconds, previous ? previous->occluders.get() : nullptr);
     if (previous && snapshot.occluders->shares_with(*previous->occluders)) snapshot.occluders = previous->occluders;
-    note_cost(snapshot.files.get(), "surfaces", steady_seconds() - start);
+    record_cost(snapshot.files.get(), "surfaces", steady_seconds() - start);
     snapshot.cache = std::make_shared<FrameCache>();
-    if (previous) snapshot.cache_before = previous->cache;
+    if (previous) snapshot.previous_cache = previous->cache;
     const uint64_t dropped = snapshot.occluders->dropped();
     if (dropped > 0 && !(previous && previous->occluders->dropped() == dropped))
         snapshot.notes.push_back(std::to_string(dropped) + " triangles skipped: zero area or coordinates out of range");
@@ -279,7 +279,7 @@ FrameMoments frame_moments(const Scene& scene, int frame, const Shutter& shutter
 
 namespace {
 void set_lens(const Scene& scene, const CameraSource& source, double seconds, Camera& camera) {
-    camera.lens = {source.aperture.at(seconds), infinity, source.blades, source.blade_turn.at(seconds)};
+    camera.lens = {source.aperture.at(seconds), infinity, source.blades, source.blade_rotation.at(seconds)};
     if (!camera.lens) return;
     camera.lens.focus =
         source.focus ? source.focus->at(seconds) : glm::distance(camera.position, source.target.at(seconds));

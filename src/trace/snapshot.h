@@ -23,7 +23,7 @@ class Occluders;
 struct Scene;
 template<class T> struct Image;
 
-struct BackgroundNow {
+struct BackgroundState {
     bool stated = false; // the scene defines a background, even a black one
     BackgroundKind kind = BackgroundKind::color;
     vec3 color{0}, zenith{0}, ground{0};
@@ -58,7 +58,7 @@ struct Snapshot {
     // then holds the mean); else empty.
     std::array<std::vector<Medium>, 3> channel_media;
     vec3 ambient{0};
-    BackgroundNow background;
+    BackgroundState background;
     std::shared_ptr<const Environment> environment; // null = none
     std::shared_ptr<const Occluders> occluders;     // of all surfaces
     std::vector<CasterSet> casters;                 // of lights that only some surfaces shadow
@@ -69,7 +69,7 @@ struct Snapshot {
     std::vector<std::string> notes;                 // what was repaired in this frame's files; to be reported once
     std::vector<FogSource> fog_sources;             // one per medium of the scene: what the next frame can reuse
     std::shared_ptr<FrameCache> cache;              // entries of this frame; null in snapshots made by hand
-    std::shared_ptr<FrameCache> cache_before;       // entries of the previous frame; null for the first
+    std::shared_ptr<FrameCache> previous_cache;     // entries of the previous frame; null for the first
     std::shared_ptr<CacheFolder> files;             // of a prepared plan; else null
     std::shared_ptr<const std::vector<Snapshot>> moments; // of a frame with motion blur; this is their middle
 
@@ -109,15 +109,15 @@ bool is_lit(const Environment& environment, const Snapshot& snapshot, int instan
 // Whether a surface that shadows one of the lights has alpha.
 bool has_alpha_shadows(const Snapshot& snapshot);
 
-BackgroundNow background_at(const Background& background, double seconds);
+BackgroundState background_at(const Background& background, double seconds);
 
 // Position of a direction in a latitude-longitude map, 0..1 from the upper left. The map's center is -Z; `rotation`
 // (radians) turns it to the left.
 vec2 lat_long_position(vec3 direction, float rotation);
 
 // Whether there is a background: one that the scene defines, or one that is not black.
-bool has_background(const BackgroundNow& background);
+bool has_background(const BackgroundState& background);
 
 // Background radiance. `screen`: position in the image, 0..1 from the upper left (for plates).
-vec3 background_radiance(const BackgroundNow& background, vec3 direction, vec2 screen);
+vec3 background_radiance(const BackgroundState& background, vec3 direction, vec2 screen);
 }

@@ -50,7 +50,7 @@ BatchSample batch_sample(const View& view, ivec2 pixel, int sample) {
             static_cast<uint32_t>(before + size)};
 }
 
-SamplePlace sample_place(const View& view, ivec2 pixel, int sample) {
+SampleIndex sample_index(const View& view, ivec2 pixel, int sample) {
     const auto [batch, index, count] = batch_sample(view, pixel, sample);
     const uint32_t key = hash(static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y), view.seed,
                               static_cast<uint32_t>(view.frame));
@@ -73,7 +73,7 @@ int moment_at(const View& view, ivec2 pixel, int sample) {
     return static_cast<int>(time * moments >> 32);
 }
 
-Ray sample_ray(const View& view, const Camera& camera, vec2 position, SamplePlace place) {
+Ray sample_ray(const View& view, const Camera& camera, vec2 position, SampleIndex place) {
     if (!camera.lens) return camera_ray(camera, view.size, position);
     const Sample2 u = sample2(place.index, hash(place.sequence, use_lens));
     return lens_ray(camera, view.size, position, aperture_point(camera.lens, {u.x, u.y}));
@@ -82,7 +82,7 @@ Ray sample_ray(const View& view, const Camera& camera, vec2 position, SamplePlac
 SamplePoint sample_point(const View& view, ivec2 pixel, int sample) {
     const vec2 center = vec2(pixel) + 0.5f;
     if (samples_of(view, pixel) == 1 || view.filter == PixelFilter::center) return {center};
-    const SamplePlace place = sample_place(view, pixel, sample);
+    const SampleIndex place = sample_index(view, pixel, sample);
     if (beside_lamp(view, center)) return lamp_sample(view, center, place);
     const Sample2 u = sample2(place.index, place.sequence);
     return {center + view.filter_radius * filter_point(view.filter, {u.x, u.y})};

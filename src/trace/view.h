@@ -86,7 +86,7 @@ struct BatchSample {
 };
 BatchSample batch_sample(const View& view, ivec2 pixel, int sample);
 
-SamplePlace sample_place(const View& view, ivec2 pixel, int sample);
+SampleIndex sample_index(const View& view, ivec2 pixel, int sample);
 
 // Position and weight of a sample; weights average 1.
 struct SamplePoint {
@@ -101,8 +101,8 @@ int moment_at(const View& view, ivec2 pixel, int sample);
 
 // The camera ray of a sample at a position, through a point of the lens if there is one. Lens points follow a separate
 // scrambled (0,2)-sequence.
-Ray sample_ray(const View& view, const Camera& camera, vec2 position, SamplePlace place);
-inline Ray sample_ray(const View& view, vec2 position, SamplePlace place) {
+Ray sample_ray(const View& view, const Camera& camera, vec2 position, SampleIndex place);
+inline Ray sample_ray(const View& view, vec2 position, SampleIndex place) {
     return sample_ray(view, view.camera, position, place);
 }
 

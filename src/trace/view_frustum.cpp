@@ -27,7 +27,7 @@ ViewFrustum view_frustum(const View& view, const Snapshot& snapshot, vec3 anchor
     ViewFrustum space{anchor, {}};
     const Lens& lens = view.camera.lens;
     const float wider = lens ? 0.5f * blur_diameter(view.camera, view.size, infinity) : 0;
-    const vec2 low(-past_edge(view) - wider), high = vec2(view.size) - low;
+    const vec2 low(-edge_margin(view) - wider), high = vec2(view.size) - low;
     const vec2 corners[] = {low, {high.x, low.y}, high, {low.x, high.y}};
     const auto ray = [&](vec2 at) { return camera_ray(view.camera, view.size, at); };
     for (int i = 0; i < 4; ++i)
@@ -45,7 +45,7 @@ ViewFrustum view_frustum(const View& view, const Snapshot& snapshot, vec3 anchor
     return space;
 }
 
-Interval<float> seen_stretch(const ViewFrustum& space, vec3 offset, vec3 direction, float radius, float growth) {
+Interval<float> seen_interval(const ViewFrustum& space, vec3 offset, vec3 direction, float radius, float growth) {
     Interval<float> stretch{0, infinity};
     for (const HalfSpace& side : space.sides) {
         // at + slope · t >= 0

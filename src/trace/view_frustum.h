@@ -23,9 +23,9 @@ struct ViewFrustum {
 ViewFrustum view_frustum(const View& view, const Snapshot& snapshot, vec3 anchor);
 
 // How far rays reach beyond the image's edges, pixels.
-inline float past_edge(const View& view) { return view.filter_radius + 1; }
+inline float edge_margin(const View& view) { return view.filter_radius + 1; }
 
 // The interval of a ray that lies within radius + growth · t of the frustum. `offset`: the ray's origin relative to the
 // anchor.
-Interval<float> seen_stretch(const ViewFrustum& space, vec3 offset, vec3 direction, float radius, float growth);
+Interval<float> seen_interval(const ViewFrustum& space, vec3 offset, vec3 direction, float radius, float growth);
 }

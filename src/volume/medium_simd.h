@@ -25,7 +25,7 @@ HWY_INLINE Mask16 positive(const Ints& a) {
     return r;
 }
 
-HWY_INLINE Floats mixed(const Floats& a, const Floats& b, const Floats& weight) { return fused(b - a, weight, a); }
+HWY_INLINE Floats lerp(const Floats& a, const Floats& b, const Floats& weight) { return fma(b - a, weight, a); }
 
 // Local coordinates along one axis: the cell and the fraction within it.
 struct Cells {
@@ -73,10 +73,10 @@ HWY_INLINE Floats brick_density(const BrickPool& pool, const Vec3s& point) {
         const auto along_z = [&](int offset, Floats& result) HWY_ATTR {
             Floats first, second;
             gather_half_pairs(base + offset, at, first, second);
-            result = mixed(first, second, z.weight);
+            result = lerp(first, second, z.weight);
         };
         along_z(0, a), along_z(9, b), along_z(81, c), along_z(90, d);
-        density = zero_unless(dense, mixed(mixed(a, b, y.weight), mixed(c, d, y.weight), x.weight));
+        density = zero_unless(dense, lerp(lerp(a, b, y.weight), lerp(c, d, y.weight), x.weight));
     }
     if (any(constant)) density = select(constant, gather(pool.constants.data(), max(Ints(-1) - id, 0)), density);
     return density;

@@ -26,7 +26,7 @@ struct CrossedCells {
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-Floats mixed(const Floats& a, const Floats& b, const Floats& share) { return fused(share, b - a, a); }
+Floats lerp(const Floats& a, const Floats& b, const Floats& share) { return fma(share, b - a, a); }
 
 double column_kernel(const CrossedCells& cells) {
     Floats v[8];
@@ -37,10 +37,10 @@ double column_kernel(const CrossedCells& cells) {
     for (const float side : {-gauss, gauss}) {
         Floats w[3];
         for (int axis = 0; axis < 3; ++axis)
-            w[axis] = fused(half, side * cells.direction[axis], load(cells.middle[axis]));
-        const Floats near = mixed(mixed(v[0], v[1], w[2]), mixed(v[2], v[3], w[2]), w[1]);
-        const Floats far = mixed(mixed(v[4], v[5], w[2]), mixed(v[6], v[7], w[2]), w[1]);
-        sum = sum + mixed(near, far, w[0]);
+            w[axis] = fma(half, side * cells.direction[axis], load(cells.middle[axis]));
+        const Floats near = lerp(lerp(v[0], v[1], w[2]), lerp(v[2], v[3], w[2]), w[1]);
+        const Floats far = lerp(lerp(v[4], v[5], w[2]), lerp(v[6], v[7], w[2]), w[1]);
+        sum = sum + lerp(near, far, w[0]);
     }
     alignas(64) float parts_of[16];
     store(sum * half, parts_of);

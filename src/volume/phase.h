@@ -21,16 +21,16 @@ struct Phase {
 inline constexpr float largest_g = 0.99f; // beyond it the lobe is narrower than a pixel
 
 struct PhaseTraits {
-    std::string_view name;     // as in scene files
-    float max_g = 0;           // 0 = takes no g
-    std::string_view beyond{}; // error for a larger |g|, and what to use instead
+    std::string_view name;      // as in scene files
+    float max_g = 0;            // 0 = takes no g
+    std::string_view g_error{}; // error for a larger |g|, and what to use instead
 };
 inline constexpr PhaseTraits phase_kinds[] = {
     {.name = "isotropic"},
-    {.name = "henyey_greenstein", .max_g = 1, .beyond = "g must be between -1 and 1"},
+    {.name = "henyey_greenstein", .max_g = 1, .g_error = "g must be between -1 and 1"},
     {.name = "schlick",
      .max_g = 0.5f,
-     .beyond = "Schlick's approximation departs from Henyey-Greenstein beyond |g| = 0.5; use \"henyey_greenstein\""},
+     .g_error = "Schlick's approximation departs from Henyey-Greenstein beyond |g| = 0.5; use \"henyey_greenstein\""},
     {.name = "rayleigh"},
     {.name = "draine"},
     {.name = "mie"},
@@ -57,7 +57,7 @@ inline float mean_cosine(const Phase& phase) {
 }
 
 // |g| of the narrowest lobe, which determines the required angular resolution.
-inline float narrowest_lobe(const Phase& phase) {
+inline float narrowest_g(const Phase& phase) {
     return phase.shape ? phase.shape->narrowest : std::abs(mean_cosine(phase));
 }
 

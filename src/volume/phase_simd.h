@@ -14,8 +14,8 @@ namespace tyndall::HWY_NAMESPACE {
 // SIMD version of lobe_value().
 HWY_INLINE Floats lobe_value(const PhaseLobe& lobe, const Floats& cosine) {
     const Floats beside = max(1.0f - (lobe.g < 0 ? -cosine : cosine), 0.0f);
-    const Floats q = fused(beside, lobe.slope, lobe.gap);
-    return fused(cosine * cosine, lobe.scale_of_square, lobe.scale) / (q * sqrt(q));
+    const Floats q = fma(beside, lobe.slope, lobe.gap);
+    return fma(cosine * cosine, lobe.scale_of_square, lobe.scale) / (q * sqrt(q));
 }
 
 // SIMD version of table_value().
@@ -23,12 +23,12 @@ HWY_INLINE Floats table_value(const PhaseTable& table, const Floats& cosine) {
     const float half = static_cast<float>(table.half);
     const Floats square = max(1.0f - abs(cosine), 0.0f) * (half * half);
     const Floats first = max(min(floor(sqrt(square)), half - 1), 0.0f);
-    const Floats share = (square - first * first) / fused(first, 2.0f, 1.0f);
+    const Floats share = (square - first * first) / fma(first, 2.0f, 1.0f);
     const Mask16 back = cosine < 0.0f;
     const Ints a = truncate(select(back, 2 * half - first, first)),
                b = truncate(select(back, 2 * half - 1 - first, first + 1.0f));
     const Floats from = gather(table.values.data(), a), to = gather(table.values.data(), b);
-    return fused(share, to - from, from);
+    return fma(share, to - from, from);
 }
 
 // SIMD version of shape_value(). Not inlined, to keep it out of loops over simpler phase functions.
@@ -45,11 +45,11 @@ HWY_INLINE Floats phase_value(const Phase& phase, const Floats& cosine) {
     case PhaseKind::isotropic:
         break;
     case PhaseKind::rayleigh:
-        return fused(cosine * cosine, 3 / (16 * pi), 3 / (16 * pi));
+        return fma(cosine * cosine, 3 / (16 * pi), 3 / (16 * pi));
     case PhaseKind::henyey_greenstein: {
         const float g = std::min(std::abs(phase.g), largest_g);
         const Floats c = phase.g < 0 ? -cosine : cosine;
-        const Floats q = max(fused(1.0f - c, 2 * g, (1 - g) * (1 - g)), 1e-7f);
+        const Floats q = max(fma(1.0f - c, 2 * g, (1 - g) * (1 - g)), 1e-7f);
         return Floats((1 - g * g) / (4 * pi)) / (q * sqrt(q));
     }
     case PhaseKind::schlick: {

@@ -15,7 +15,7 @@ struct Fog {
     bool even() const { return minimum == majorant; }
 };
 
-float mixed(float a, float b, float weight) { return a + weight * (b - a); }
+float lerp(float a, float b, float weight) { return a + weight * (b - a); }
 
 // Trilinear density of a brick at a point in brick coordinates, 0..8.
 float brick_value(const uint16_t* values, vec3 point) {
@@ -24,9 +24,9 @@ float brick_value(const uint16_t* values, vec3 point) {
     const vec3 weight = inside - vec3(cell);
     const uint16_t* corner = values + (cell.x * 9 + cell.y) * 9 + cell.z;
     const auto along_z = [&](int offset) {
-        return mixed(float_from_half(corner[offset]), float_from_half(corner[offset + 1]), weight.z);
+        return lerp(float_from_half(corner[offset]), float_from_half(corner[offset + 1]), weight.z);
     };
-    return mixed(mixed(along_z(0), along_z(9), weight.y), mixed(along_z(81), along_z(90), weight.y), weight.x);
+    return lerp(lerp(along_z(0), along_z(9), weight.y), lerp(along_z(81), along_z(90), weight.y), weight.x);
 }
 
 template<class Visit>
@@ -105,27 +105,27 @@ float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> 
         return static_cast<float>(std::exp(-optical_depth(medium, {ray.at(range.low), ray.direction, range.length()})));
     constexpr double small = 0.1, often = 4;
     const double extinction = grey_extinction(medium.optics);
-    double share = 1, certain = 0; // transmittance so far, and control optical depth not yet applied to it
+    double transmittance = 1, certain = 0; // transmittance so far, and control optical depth not yet applied to it
     double left = free_depth(random.next());
     walk_brick_fog(*medium.density.bricks, ray, {range.low, range.high}, [&](const Fog& fog, const auto& density) {
         certain += extinction * fog.minimum * (fog.high - fog.low);
-        if (certain > small) share *= std::exp(-certain), certain = 0;
+        if (certain > small) transmittance *= std::exp(-certain), certain = 0;
         // Variance scales with the remaining light, so the optimal rate of lookups is proportional to it.
         const double varying = extinction * (fog.majorant - fog.minimum);
         for (double t = fog.low; varying > 0;) {
-            const double rate = std::max(1.0, often * share) * varying, step = left / rate;
+            const double rate = std::max(1.0, often * transmittance) * varying, step = left / rate;
             if (t + step >= fog.high) {
                 left -= rate * (fog.high - t);
                 break;
             }
             t += step, ++lookups;
-            share *= std::clamp(1 - extinction * (density(t) - fog.minimum) / rate, 0.0, 1.0);
+            transmittance *= std::clamp(1 - extinction * (density(t) - fog.minimum) / rate, 0.0, 1.0);
             left = free_depth(random.next());
-            if (share < small) share = random.next() * small < share ? small : 0;
-            if (share == 0) return false;
+            if (transmittance < small) transmittance = random.next() * small < transmittance ? small : 0;
+            if (transmittance == 0) return false;
         }
         return true;
     });
-    return static_cast<float>(share * std::exp(-certain));
+    return static_cast<float>(transmittance * std::exp(-certain));
 }
 }

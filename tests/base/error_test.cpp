@@ -39,14 +39,14 @@ TEST(Printable, NeverGrowsBeyondItsLimitNorTearsACharacter) {
 TEST(Error, SaysWhereAndWhat) {
     EXPECT_STREQ(Error(ExitCode::refused, "a.json: /g", "is wrong").what(), "a.json: /g: is wrong");
     EXPECT_STREQ(Error(ExitCode::usage, "", "is wrong").what(), "is wrong");
-    EXPECT_EQ(error_text(ExitCode::refused, [] { refuse("a", "b"); }), "a: b");
-    EXPECT_EQ(error_text(ExitCode::unwritable, [] { fail(ExitCode::unwritable, "a", "b"); }), "a: b");
+    EXPECT_EQ(error_message(ExitCode::refused, [] { refuse("a", "b"); }), "a: b");
+    EXPECT_EQ(error_message(ExitCode::unwritable, [] { fail(ExitCode::unwritable, "a", "b"); }), "a: b");
 }
 
 TEST(Error, AGarbageMessageOfMegabytesStaysOneShortLine) {
     std::string garbage;
     for (int i = 0; i < 1 << 22; ++i) garbage += static_cast<char>(i * 7);
-    const std::string text = error_text(ExitCode::refused, [&] { refuse(garbage, garbage); });
+    const std::string text = error_message(ExitCode::refused, [&] { refuse(garbage, garbage); });
     EXPECT_GT(text.size(), 400u);
 }
 

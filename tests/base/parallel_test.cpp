@@ -59,17 +59,17 @@ TEST(Parallel, RunsBodiesTogetherAndWhoIsDoneHelps) {
         return threads.size();
     };
     // The second body's loop goes on only when both threads work at it, though the first is long over.
-    run_together({[&] { EXPECT_TRUE(happens([&] { return begun.load(); })); },
-                  [&] {
-                      begun = true;
-                      parallel_for(64, [&](int64_t) {
-                          {
-                              const std::scoped_lock lock(mutex);
-                              threads.insert(std::this_thread::get_id());
-                          }
-                          EXPECT_TRUE(happens([&] { return seen() == 2; }));
-                      });
-                  }});
+    parallel_invoke({[&] { EXPECT_TRUE(happens([&] { return begun.load(); })); },
+                     [&] {
+                         begun = true;
+                         parallel_for(64, [&](int64_t) {
+                             {
+                                 const std::scoped_lock lock(mutex);
+                                 threads.insert(std::this_thread::get_id());
+                             }
+                             EXPECT_TRUE(happens([&] { return seen() == 2; }));
+                         });
+                     }});
     set_thread_count(0);
     EXPECT_EQ(seen(), 2u);
 }
@@ -78,10 +78,10 @@ TEST(Parallel, RunsEveryBodyOnceOnOneThread) {
     for (const int count : {1, 2}) {
         set_thread_count(count);
         std::atomic<int> calls = 0;
-        run_together({});
-        run_together({[&] { ++calls; }, [&] { calls += 10; }, [&] { calls += 100; }});
+        parallel_invoke({});
+        parallel_invoke({[&] { ++calls; }, [&] { calls += 10; }, [&] { calls += 100; }});
         EXPECT_EQ(calls, 111);
-        EXPECT_THROW(run_together({[] {}, [] { throw std::runtime_error("no"); }}), std::runtime_error);
+        EXPECT_THROW(parallel_invoke({[] {}, [] { throw std::runtime_error("no"); }}), std::runtime_error);
     }
     set_thread_count(0);
 }

@@ -10,17 +10,17 @@ namespace {
 constexpr size_t large = size_t{3} << 20;
 
 TEST(Recycled, BlocksOfTheSameSizeComeBack) {
-    void* first = take_memory(large);
+    void* first = acquire_memory(large);
     EXPECT_EQ(reinterpret_cast<uintptr_t>(first) % 64, 0u);
-    give_memory(first, large);
-    void* other = take_memory(large + 4096);
+    release_memory(first, large);
+    void* other = acquire_memory(large + 4096);
     EXPECT_NE(other, first);
-    void* second = take_memory(large);
+    void* second = acquire_memory(large);
     EXPECT_EQ(second, first);
-    void* third = take_memory(large);
+    void* third = acquire_memory(large);
     EXPECT_NE(third, second);
     for (const auto& [memory, size] : {std::pair{other, large + 4096}, {second, large}, {third, large}})
-        give_memory(memory, size);
+        release_memory(memory, size);
 }
 
 TEST(Recycled, ValuesAreThoseAsked) {

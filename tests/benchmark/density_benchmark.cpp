@@ -18,7 +18,7 @@ float packet_sum(const Medium& medium, const float* origin, const float* directi
     const Vec3s o{load(origin), load(origin + 16), load(origin + 32)};
     const Vec3s d{load(direction), load(direction + 16), load(direction + 32)};
     Floats sum = 0.0f;
-    for (int k = 0; k < steps; ++k) sum = sum + density16(medium, fused(d, step * (static_cast<float>(k) + 0.5f), o));
+    for (int k = 0; k < steps; ++k) sum = sum + density16(medium, fma(d, step * (static_cast<float>(k) + 0.5f), o));
     alignas(64) float lanes[16];
     store(sum, lanes);
     float total = 0;

@@ -107,7 +107,7 @@ struct PictureRays {
     Image<float> alpha, depth;
 };
 
-PictureRays picture_rays(const View& view, const Snapshot& snapshot) {
+PictureRays pixel_rays(const View& view, const Snapshot& snapshot) {
     PictureRays picture;
     picture.color = Image<vec3>(view.size, vec3(2));
     picture.alpha = Image<float>(view.size, 0), picture.depth = Image<float>(view.size, infinity);
@@ -178,7 +178,7 @@ void fog_of_picture(benchmark::State& state, const std::string& name, bool keep)
     view.size = size_of(option("TYNDALL_SIZE", "640x360"));
     const Camera camera = camera_at(scene, find_camera(scene, ""), snapshot.seconds);
     view.camera = camera;
-    PictureRays picture = picture_rays(view, snapshot);
+    PictureRays picture = pixel_rays(view, snapshot);
     std::vector<Scatter> results(picture.rays.size());
     const Mode& mode = find_mode(name);
 
@@ -190,9 +190,9 @@ void fog_of_picture(benchmark::State& state, const std::string& name, bool keep)
     const auto run = [&](Times& times) {
         movement.move(frame, still, snapshot), movement.move(frame, camera, view.camera);
         movement.move_fog(frame, still, snapshot);
-        if (keep) snapshot.cache_before = std::exchange(snapshot.cache, std::make_shared<FrameCache>());
+        if (keep) snapshot.previous_cache = std::exchange(snapshot.cache, std::make_shared<FrameCache>());
         view.frame = frame++;
-        if (movement.camera) times.trace.time([&] { picture = picture_rays(view, snapshot); });
+        if (movement.camera) times.trace.time([&] { picture = pixel_rays(view, snapshot); });
         ScatterFunction function;
         times.prepare.time([&] { function = mode.prepare(view, snapshot, settings, keep ? &history : nullptr); });
         times.scatter.time([&] { scatter_picture(function, picture, results); });

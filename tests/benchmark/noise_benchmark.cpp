@@ -55,7 +55,7 @@ void noise_grow(benchmark::State& state) {
     recipe.voxel_size = 0.03125; // 128³ voxels
     recipe.noise.octaves = static_cast<int>(state.range(0));
     recipe.threshold = static_cast<float>(state.range(1)) / 100;
-    for (auto _ : state) benchmark::DoNotOptimize(grow(recipe, 0).leaves.data());
+    for (auto _ : state) benchmark::DoNotOptimize(generate(recipe, 0).leaves.data());
     state.SetItemsProcessed(state.iterations() * 128 * 128 * 128);
 }
 BENCHMARK(noise_grow)->Args({4, 20})->Args({4, 50})->Args({4, 60})->Unit(benchmark::kMillisecond);
@@ -68,7 +68,7 @@ void noise_grow_loop(benchmark::State& state) {
     recipe.voxel_size = 0.03125;
     recipe.threshold = 0.3f, recipe.wind = vec3(0.2f, 0, 0.1f), recipe.period = 4;
     recipe.swirl = 0.15f, recipe.swirl_speed = 0.25f;
-    for (auto _ : state) benchmark::DoNotOptimize(grow(recipe, 0.7).leaves.data());
+    for (auto _ : state) benchmark::DoNotOptimize(generate(recipe, 0.7).leaves.data());
     state.SetItemsProcessed(state.iterations() * 128 * 128 * 128);
 }
 BENCHMARK(noise_grow_loop)->Unit(benchmark::kMillisecond);

@@ -6,9 +6,9 @@
 
 namespace tyndall::test {
 namespace {
-void expect_proof(const std::string& name, const SceneProof& proof) {
+void expect_proof(const std::string& name, const VerifyOptions& options) {
     const Scene scene = load_scene(std::string(TYNDALL_SOURCE_DIR) + "/scenes/" + name + ".json");
-    const std::vector<Check> checks = verify_scene(scene, proof, {});
+    const std::vector<Check> checks = verify_scene(scene, options, {});
     EXPECT_GE(checks.size(), 5u) << name;
     for (const Check& check : checks)
         EXPECT_TRUE(check.holds()) << name << ", " << check.topic << ": " << check.name << " is " << check.measured;
@@ -16,9 +16,9 @@ void expect_proof(const std::string& name, const SceneProof& proof) {
 
 class ExampleScene : public testing::TestWithParam<const char*> {};
 TEST_P(ExampleScene, HoldsUnderProof) {
-    SceneProof proof;
-    proof.size = {48, 27}, proof.samples = 64;
-    expect_proof(GetParam(), proof);
+    VerifyOptions options;
+    options.size = {48, 27}, options.samples = 64;
+    expect_proof(GetParam(), options);
 }
 INSTANTIATE_TEST_SUITE_P(Verify, ExampleScene, testing::Values("window", "spotlight", "cloud"));
 

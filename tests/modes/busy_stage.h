@@ -6,7 +6,7 @@ namespace tyndall::test {
 float wavy(vec3 p);
 
 // A grid and homogeneous fog over each other, a lamp and the sun, and things in their way.
-Stage busy_stage();
+TestScene busy_scene();
 
 std::vector<Ray> busy_rays(int count);
 }

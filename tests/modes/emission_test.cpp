@@ -31,7 +31,7 @@ TEST(Emission, NeedsNoExtinction) {
         if (!reads(mode, "terms.emission") || mode.name == "path") continue; // path_test.cpp has its own
         for (const Scene* scene : {&alone, &beside_fog}) {
             const Snapshot snapshot = make_snapshot(*scene, Moment{0, 0});
-            const std::vector<Ray> rays = picture_rays(view, snapshot, 10);
+            const std::vector<Ray> rays = pixel_rays(view, snapshot, 10);
             std::vector<Scatter> expected;
             for (const Ray& ray : rays) {
                 const double length = clip({vec3(-1), vec3(1)}, ray.origin, ray.direction, {0, ray.t_max}).length();

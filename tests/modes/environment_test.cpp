@@ -23,14 +23,14 @@ constexpr double sigmas = 4.5;
 const Box unit_box{vec3(0), vec3(1)};
 const Box slab{vec3(-1e4f, 0, -1e4f), vec3(1e4f, 1, 1e4f)};
 
-BackgroundNow even_map(vec3 color) {
-    BackgroundNow map;
+BackgroundState even_map(vec3 color) {
+    BackgroundState map;
     map.color = color;
     return map;
 }
 
 // A lat-long map whose texels have the radiance of their middles.
-template<class Radiance> BackgroundNow map_of(ivec2 size, const Radiance& radiance, float rotation = 0) {
+template<class Radiance> BackgroundState map_of(ivec2 size, const Radiance& radiance, float rotation = 0) {
     auto image = std::make_shared<Image<vec3>>(size);
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {
@@ -38,16 +38,16 @@ template<class Radiance> BackgroundNow map_of(ivec2 size, const Radiance& radian
             image->at(x, y) =
                 radiance(vec3(std::sin(polar) * std::sin(turn), std::cos(polar), -std::sin(polar) * std::cos(turn)));
         }
-    BackgroundNow map;
+    BackgroundState map;
     map.kind = BackgroundKind::image, map.image = image, map.lat_long = true, map.rotation = rotation;
     return map;
 }
 
-BackgroundNow half_sky() {
+BackgroundState half_sky() {
     return map_of({64, 512}, [](vec3 direction) { return vec3(direction.y > 0 ? 1 : 0); });
 }
 
-BackgroundNow disc_map(vec3 direction, float half_angle, float rotation = 0) {
+BackgroundState disc_map(vec3 direction, float half_angle, float rotation = 0) {
     const float edge = std::cos(half_angle);
     return map_of(
         {2048, 1024}, [&](vec3 d) { return vec3(glm::dot(d, direction) > edge ? 1000 : 0); }, rotation);
@@ -61,7 +61,7 @@ void expect_near(const RayEstimate& got, double expected, double share, const st
 }
 
 TEST(Environment, DirectionsArePickedByTheirLight) {
-    for (const BackgroundNow& map :
+    for (const BackgroundState& map :
          {even_map(vec3(2, 1, 3)), half_sky(), disc_map(glm::normalize(vec3(1, 2, -3)), 0.3f, 1),
           map_of(
               {31, 17}, [](vec3 d) { return vec3(1 + d.x, 1 + d.y * d.z, 2); }, -0.4f)}) {
@@ -104,8 +104,8 @@ TEST(Environment, WhiteFurnaceIsWhite) {
 }
 
 TEST(Environment, WhiteSurfacesInWhiteSurroundingsAreWhite) {
-    Stage stage =
-        stage_of({homogeneous_medium(1, {vec3(-2), vec3(2)}, forward_phase(0.5f))}, {}, {box_of(vec3(0), vec3(1), 0)});
+    TestScene stage = make_scene({homogeneous_medium(1, {vec3(-2), vec3(2)}, forward_phase(0.5f))}, {},
+                                 {box_of(vec3(0), vec3(1), 0)});
     stage.scene->materials = {lambert(vec3(1))};
     add_surfaces(*stage.scene, stage.snapshot);
     stage.snapshot.background.color = vec3(1);
@@ -194,9 +194,9 @@ TEST(Environment, MarchIsAsPathsOfOneOrder) {
     const vec3 towards = glm::normalize(vec3(0.4f, 1, -0.3f));
     const Medium grid = medium_of(unit_volume(16, [](vec3 p) { return 0.2f + p.x * p.y; }), 3);
     Medium colored = homogeneous_medium(0.5f, {vec3(-1), vec3(2)}, forward_phase(0.8f), vec3(0.9f, 0.5f, 0.2f));
-    for (const BackgroundNow& map : {disc_map(towards, 0.035f), half_sky(), even_map(vec3(1, 2, 3))})
+    for (const BackgroundState& map : {disc_map(towards, 0.035f), half_sky(), even_map(vec3(1, 2, 3))})
         for (const std::vector<Medium>& media : {std::vector{grid}, std::vector{grid, colored}}) {
-            Stage stage = stage_of(media, {}, {shade(0.5f, 1.2f)});
+            TestScene stage = make_scene(media, {}, {roof(0.5f, 1.2f)});
             stage.snapshot.environment = make_environment(map);
             for (const vec3 way : {vec3(0.05f, -0.1f, -1), vec3(-0.08f, 0.05f, -1)}) {
                 const Ray ray{{0.4f, 0.6f, 3}, glm::normalize(way), 6};
@@ -231,9 +231,9 @@ TEST(Environment, FactorsOnFogAndTintCountOnce) {
 // A floor beside an edge that hides part of the sky, in fog.
 TEST(Environment, SurfacesAreLitAsByPaths) {
     const vec3 towards = glm::normalize(vec3(0.4f, 1, -0.3f));
-    for (const BackgroundNow& map : {disc_map(towards, 0.1f), half_sky(), even_map(vec3(1, 2, 3))}) {
-        Stage stage = stage_of({homogeneous_medium(0.2f, {vec3(-9, 0, -9), vec3(9, 2, 9)})}, {},
-                               {floor_of(0, 9, 0), shade(0.5f, 1)});
+    for (const BackgroundState& map : {disc_map(towards, 0.1f), half_sky(), even_map(vec3(1, 2, 3))}) {
+        TestScene stage = make_scene({homogeneous_medium(0.2f, {vec3(-9, 0, -9), vec3(9, 2, 9)})}, {},
+                                     {floor_of(0, 9, 0), roof(0.5f, 1)});
         stage.scene->materials = {lambert(vec3(0.8f, 0.5f, 0.2f))};
         add_surfaces(*stage.scene, stage.snapshot);
         stage.snapshot.environment = make_environment(map);
@@ -282,14 +282,14 @@ TEST(Environment, ModesSayWhatTheyMissOfIt) {
 // As E has it: over all pixels, of light that scatters forwards, past a wall.
 TEST(Environment, ItsMeanIsAsFarOffAsModesSay) {
     for (const float g : {0.0f, 0.8f}) {
-        Stage stage = stage_of({homogeneous_medium(0.5f, unit_box, forward_phase(g))}, {},
-                               {quad({-2, -2, -0.5f}, {4, 0, 0}, {0, 4, 0})});
+        TestScene stage = make_scene({homogeneous_medium(0.5f, unit_box, forward_phase(g))}, {},
+                                     {quad({-2, -2, -0.5f}, {4, 0, 0}, {0, 4, 0})});
         stage.snapshot.environment = make_environment(half_sky());
         const View view = view_of({0.5f, 1.2f, 4}, {0.5f, 0.5f, 0.5f}, {24, 16}, 0.5f);
         const auto march = find_mode("march").prepare(view, stage.snapshot, {}, nullptr);
         const auto cone = find_mode("cone").prepare(view, stage.snapshot, {}, nullptr);
         double squares = 0, sum = 0;
-        for (const Ray& ray : picture_rays(view, stage.snapshot)) {
+        for (const Ray& ray : pixel_rays(view, stage.snapshot)) {
             const double right = estimate_ray(march, ray, 4, fog_light).value.x;
             const double off = estimate_ray(cone, ray, 1, fog_light).value.x - right;
             squares += off * off, sum += right;
@@ -307,7 +307,7 @@ TEST(Environment, ModesWithItsMeanHaveItAsAmbientLight) {
     snapshot.environment = make_environment(half_sky());
     even.ambient = snapshot.environment->mean();
     const View view = view_of({0.5f, 0.5f, 3}, vec3(0.5f));
-    const std::vector<Ray> rays = picture_rays(view, snapshot);
+    const std::vector<Ray> rays = pixel_rays(view, snapshot);
     for (const char* mode : {"froxel", "shadow-map", "shadow-volume", "cone"}) {
         const double expected = mean_of(run_mode(mode, view, even, {}, rays));
         EXPECT_GT(expected, 0) << mode;

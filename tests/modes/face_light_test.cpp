@@ -158,7 +158,7 @@ TEST(FaceLight, MarchIsAsPathsOfOneOrder) {
     }
     lights[2].shadows = false;
     for (const std::vector<Medium>& media : {std::vector{grid}, std::vector{grid, colored}}) {
-        const Stage stage = stage_of(media, lights, {shade(0.3f, 0.8f)});
+        const TestScene stage = make_scene(media, lights, {roof(0.3f, 0.8f)});
         for (const Ray& ray : {Ray{{0.3f, 0.4f, 2}, glm::normalize(vec3(0.05f, -0.1f, -1)), 4},
                                Ray{{0.7f, 0.3f, 2}, glm::normalize(vec3(-0.08f, 0.15f, -1)), 4}}) {
             const RayEstimate paths = path_fog_light(stage.snapshot, ray, 1 << 9);
@@ -225,7 +225,7 @@ TEST(FaceLight, SurfacesGetThePublishedIrradiance) {
     for (const bool shaded : {false, true}) {
         std::vector<Mesh> meshes{floor_of(0, 1, 0)};
         if (shaded) meshes.push_back(quad({0, 0.5f, -9}, {9, 0, 0}, {0, 0, 18}));
-        Stage stage = stage_of({}, {light}, meshes);
+        TestScene stage = make_scene({}, {light}, meshes);
         vec3 radiance;
         shade_surfaces(stage.snapshot, {}, {&point, 1}, u, {&radiance, 1});
         EXPECT_NEAR(radiance.x, shaded ? 0.5 * full : full, 0.003 * full);
@@ -278,7 +278,7 @@ TEST(FaceLight, PictureOfHalfIsHalfTheFace) {
     // The lamp that stands for it is the one that stands for half the face.
     tyndall::expect_near(light.position, half.position, 1e-5f);
     tyndall::expect_near(light.intensity, half.intensity, 1e-5f);
-    EXPECT_NEAR(far_enough(*light.area, 0.1), far_enough(*half.area, 0.1), 0.1 * far_enough(*half.area, 0.1));
+    EXPECT_NEAR(far_distance(*light.area, 0.1), far_distance(*half.area, 0.1), 0.1 * far_distance(*half.area, 0.1));
 
     // The eye sees the white half as bright as the face, the other black.
     for (const float side : {-1.0f, 1.0f}) {
@@ -303,8 +303,8 @@ TEST(FaceLight, PictureOfHalfIsHalfTheFaceOnSurfacesAndAfterManyOrders) {
     vec3 got[2], expected[2];
     for (int i = 0; i < 2; ++i) {
         point.position = {i == 0 ? -0.5f : 0.5f, 0, 0};
-        shade_surfaces(stage_of({}, {light}, {floor_of(0, 1, 0)}).snapshot, {}, {&point, 1}, u, {&got[i], 1});
-        shade_surfaces(stage_of({}, {half}, {floor_of(0, 1, 0)}).snapshot, {}, {&point, 1}, u, {&expected[i], 1});
+        shade_surfaces(make_scene({}, {light}, {floor_of(0, 1, 0)}).snapshot, {}, {&point, 1}, u, {&got[i], 1});
+        shade_surfaces(make_scene({}, {half}, {floor_of(0, 1, 0)}).snapshot, {}, {&point, 1}, u, {&expected[i], 1});
         EXPECT_NEAR(got[i].x, expected[i].x, 0.004f * expected[i].x);
     }
     EXPECT_GT(std::abs(got[0].x - got[1].x), 0.2f * got[0].x);
@@ -324,8 +324,8 @@ TEST(FaceLight, OthersSayWhereALampStandsForIt) {
     const View view = view_of({0, 0, 0}, {0, 0, -1});
     for (const Mode& mode : modes()) {
         const bool own = mode.name == "march" || mode.name == "path";
-        EXPECT_EQ(says(mode.limitations(view, with, {}), limitation::lamp_for_face), !own) << mode.name;
-        EXPECT_FALSE(says(mode.limitations(view, without, {}), limitation::lamp_for_face)) << mode.name;
+        EXPECT_EQ(has_limitation(mode.limitations(view, with, {}), limitation::lamp_for_face), !own) << mode.name;
+        EXPECT_FALSE(has_limitation(mode.limitations(view, without, {}), limitation::lamp_for_face)) << mode.name;
     }
 }
 }

@@ -24,7 +24,7 @@ constexpr double sigmas = 4.5;
 
 // A ball of .5 m that glows evenly and greenly but for its edge, its middle at `center`.
 Medium glowing_ball(vec3 center) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const SparseVolume ball =
         tenth_volume(ivec3(12), [](ivec3 at) { return glm::clamp(5.5f - glm::length(vec3(at) - 5.5f), 0.0f, 1.0f); });
     MediumSource source = grid_source(scratch, "ball", ball, 0);
@@ -102,7 +102,7 @@ TEST(FireLight, MarchIsAsPathsOfOneOrder) {
     const Medium colored = homogeneous_medium(0.5f, {vec3(-1), vec3(2)}, forward_phase(0.8f), vec3(0.9f, 0.5f, 0.2f));
     const Medium fire = glowing_ball({0.7f, 0.5f, 0.4f}), other = glowing_ball({-0.6f, 0.2f, 0});
     for (const std::vector<Medium>& media : {std::vector{grid, fire}, std::vector{grid, colored, fire, other}}) {
-        const Stage stage = stage_of(media, {}, {shade(0.3f, 0.8f)});
+        const TestScene stage = make_scene(media, {}, {roof(0.3f, 0.8f)});
         for (const Ray& ray : {Ray{{0.3f, 0.4f, 2}, glm::normalize(vec3(0.05f, -0.1f, -1)), 4},
                                Ray{{0.7f, 0.5f, 2}, glm::normalize(vec3(0.01f, 0.02f, -1)), 4}}) {
             const RayEstimate paths = traced(stage.snapshot, ray, 1 << 12, 1);
@@ -142,7 +142,7 @@ TEST(FireLight, SurfacesAreLitAsByQuadrature) {
     for (const vec3 place : {vec3(0), vec3(0.9f, 0, 0.1f), vec3(0.1f, 0.6f, 0)}) {
         point.position = place;
         const dvec3 expected = reflected_by_quadrature(ball, place);
-        const Stage stage = stage_of({ball}, {}, {floor_of(place.y, 2, 0)});
+        const TestScene stage = make_scene({ball}, {}, {floor_of(place.y, 2, 0)});
         constexpr int batches = 64, count = 512;
         dvec3 sum(0), squares(0);
         for (uint32_t b = 0; b < batches; ++b) {
@@ -186,7 +186,7 @@ TEST(FireLight, LampsHaveItsCandelaAndPlace) {
 TEST(FireLight, FarEnoughIsWhereABallIsOffBySoMuch) {
     Light lamp;
     lamp.radius = 0.5f;
-    const double d = far_enough(lamp, 0.02);
+    const double d = far_distance(lamp, 0.02);
     double sum = 0, weight = 0;
     for (const QuadratureNode& r : gauss_legendre(24))
         for (const QuadratureNode& cosine : gauss_legendre(24)) {
@@ -200,12 +200,13 @@ TEST(FireLight, PartsAndLimitationsSayWhatBecomesOfIt) {
     const Medium fog = homogeneous_medium(0.5f, {vec3(-3), vec3(3)}, forward_phase(0.2f), vec3(0.8f));
     const Snapshot snapshot = snapshot_of({fog, glowing_ball({0, 0.5f, 0})}, {point_light({1, 1, 1}, 2)});
     const View view = view_of({0.3f, 0.4f, 4}, {0, 0, 0});
-    const std::vector<Ray> rays = picture_rays(view, snapshot, 10);
+    const std::vector<Ray> rays = pixel_rays(view, snapshot, 10);
     for (const Mode& mode : modes()) {
         const bool lamps =
             mode.name == "froxel" || mode.name == "shadow-map" || mode.name == "shadow-volume" || mode.name == "cone";
-        EXPECT_EQ(says(mode.limitations(view, snapshot, {}), limitation::lamps_for_fire), lamps) << mode.name;
-        EXPECT_FALSE(says(mode.limitations(view, snapshot, {}), limitation::unscattered_emission)) << mode.name;
+        EXPECT_EQ(has_limitation(mode.limitations(view, snapshot, {}), limitation::lamps_for_fire), lamps) << mode.name;
+        EXPECT_FALSE(has_limitation(mode.limitations(view, snapshot, {}), limitation::unscattered_emission))
+            << mode.name;
         if (!lamps && mode.name != "march") continue;
         std::vector<vec3> parts;
         const auto whole = run_mode(mode.name, view, snapshot, settings_for(Quality::preview), rays);

@@ -12,7 +12,7 @@ SparseVolume tenth_volume(ivec3 size, const std::function<float(ivec3)>& value) 
     return volume;
 }
 
-FileSequence grid_file(const Scratch& scratch, const std::string& name, SparseVolume volume) {
+FileSequence grid_file(const TempFolder& scratch, const std::string& name, SparseVolume volume) {
     FileSequence sequence;
     sequence.pattern = scratch.file(name + ".vdb");
     volume.name = name;
@@ -20,8 +20,8 @@ FileSequence grid_file(const Scratch& scratch, const std::string& name, SparseVo
     return sequence;
 }
 
-MediumSource grid_source(const Scratch& scratch, const std::string& name, const SparseVolume& density, float extinction,
-                         vec3 albedo) {
+MediumSource grid_source(const TempFolder& scratch, const std::string& name, const SparseVolume& density,
+                         float extinction, vec3 albedo) {
     MediumSource source;
     source.name = name, source.kind = MediumKind::vdb;
     source.sequence = grid_file(scratch, "density", density);
@@ -29,7 +29,7 @@ MediumSource grid_source(const Scratch& scratch, const std::string& name, const 
     return source;
 }
 
-GridSource property(const Scratch& scratch, const std::string& name, const SparseVolume& volume) {
+GridSource property(const TempFolder& scratch, const std::string& name, const SparseVolume& volume) {
     return {grid_file(scratch, name, volume), {name}, {}};
 }
 

@@ -12,14 +12,14 @@ namespace tyndall::test {
 SparseVolume tenth_volume(ivec3 size, const std::function<float(ivec3)>& value);
 
 // A file of one grid in the folder.
-FileSequence grid_file(const Scratch& scratch, const std::string& name, SparseVolume volume);
+FileSequence grid_file(const TempFolder& scratch, const std::string& name, SparseVolume volume);
 
 // Fog of that name with nothing but a density, or without one (`extinction` 0).
-MediumSource grid_source(const Scratch& scratch, const std::string& name, const SparseVolume& density, float extinction,
-                         vec3 albedo = vec3(0));
+MediumSource grid_source(const TempFolder& scratch, const std::string& name, const SparseVolume& density,
+                         float extinction, vec3 albedo = vec3(0));
 
 // A property in a file of its own.
-GridSource property(const Scratch& scratch, const std::string& name, const SparseVolume& volume);
+GridSource property(const TempFolder& scratch, const std::string& name, const SparseVolume& volume);
 
 Snapshot snapshot_with(Scene& scene, const MediumSource& medium);
 }

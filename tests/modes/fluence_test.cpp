@@ -207,9 +207,9 @@ INSTANTIATE_TEST_SUITE_P(Fluence, FluenceOfCube, testing::Values(0.0f, 0.7f));
 
 TEST(Fluence, LooksTheSameInFroxels) {
     // What orders beyond the first add to the picture, in small froxels and in the march.
-    const Stage stage = half_shadowed_fog();
+    const TestScene stage = half_shadowed_fog();
     const View view = view_of({0, 2, 9}, {0, 1.5f, 0});
-    const std::vector<Ray> rays = picture_rays(view, stage.snapshot);
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot);
     Settings settings;
     settings.of<FroxelSettings>().tile = 2, settings.of<FroxelSettings>().depth_slices = 128;
     const auto light = [&](const char* mode, int orders) {
@@ -231,13 +231,13 @@ TEST(Fluence, SaysWhatItLeavesOut) {
         const auto said = [&](int orders) {
             return find_mode(name).limitations(View{}, snapshot, with_orders(Settings{}, orders));
         };
-        EXPECT_TRUE(says(said(1), limitation::single_scattering_only)) << name;
-        EXPECT_FALSE(says(said(3), limitation::single_scattering_only)) << name;
+        EXPECT_TRUE(has_limitation(said(1), limitation::single_scattering_only)) << name;
+        EXPECT_FALSE(has_limitation(said(3), limitation::single_scattering_only)) << name;
         const Limitations three = said(3), all = said(all_orders);
         EXPECT_EQ(std::ranges::find(three, &limitation::orders_left_out, &Limitation::kind)->amounts[0], 3) << name;
         EXPECT_NEAR(std::ranges::find(all, &limitation::cached_fluence, &Limitation::kind)->amounts[0], 1 / 24.0, 1e-6);
-        EXPECT_FALSE(says(all, limitation::orders_left_out)) << name;
-        EXPECT_TRUE(says(all, limitation::unshadowed_ambient)) << name;
+        EXPECT_FALSE(has_limitation(all, limitation::orders_left_out)) << name;
+        EXPECT_TRUE(has_limitation(all, limitation::unshadowed_ambient)) << name;
     }
 }
 

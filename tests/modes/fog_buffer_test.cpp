@@ -130,8 +130,8 @@ TEST(FogBuffer, AShareOfThePictureIsCloseInSmoothFogAndExactWhereDepthDiffers) {
 // Whether a surface or the fog ends a ray is passed on: for the picture's own rays, and for those that are not in it.
 TEST(FogBuffer, RaysThatNothingEndsStayOpen) {
     const View view = small_view();
-    const Stage stage = stage_of({homogeneous_medium(0.3f, Box{vec3(-2), vec3(2)})}, {},
-                                 {quad({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0})});
+    const TestScene stage = make_scene({homogeneous_medium(0.3f, Box{vec3(-2), vec3(2)})}, {},
+                                       {quad({-0.5f, -0.5f, 0}, {1, 0, 0}, {0, 1, 0})});
     std::atomic<int> open = 0, closed = 0;
     const ScatterFunction whole = [&](const RayBatch& batch, std::span<Scatter> results) {
         ASSERT_EQ(batch.open.size(), batch.rays.size());
@@ -245,7 +245,7 @@ TEST(FogBuffer, AnEyeThatMovesAsideRemembersLess) {
             view.camera.position.x += way * static_cast<float>(frame);
             from_fog_buffer(view, snapshot, {}, march_of(view, snapshot), &history);
         }
-        return history.picture->age.at(120, 80);
+        return history.buffer->age.at(120, 80);
     };
     EXPECT_EQ(oldest(0), 8);
     EXPECT_GT(oldest(0.003f), oldest(0.03f));

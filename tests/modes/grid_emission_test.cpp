@@ -32,7 +32,7 @@ float plume(ivec3 voxel) {
 // From inside the box to inside the box: no edge is met.
 const Ray inside{{1, 1.2f, 0.4f}, {0, 0, 1}, 3};
 
-MediumSource glowing(const Scratch& scratch, BlackbodyKind kind, float extinction, vec3 albedo = vec3(0)) {
+MediumSource glowing(const TempFolder& scratch, BlackbodyKind kind, float extinction, vec3 albedo = vec3(0)) {
     MediumSource source = grid_source(scratch, "fire", even(1), extinction, albedo);
     source.temperature = property(scratch, "temperature", even(hot));
     source.blackbody = BlackbodySource{.kind = kind, .scale = 0.25f, .tint = vec3(1, 0.5f, 1)};
@@ -57,7 +57,7 @@ void expect_along(const Snapshot& snapshot, const Ray& ray, dvec3 expected, cons
 }
 
 TEST(GridEmission, BoxInVacuumIsEmissionTimesLength) {
-    const Scratch scratch;
+    const TempFolder scratch;
     for (const BlackbodyKind kind : {BlackbodyKind::kelvin, BlackbodyKind::cycles}) {
         Scene scene;
         const Snapshot snapshot = snapshot_with(scene, glowing(scratch, kind, 0));
@@ -75,7 +75,7 @@ Snapshot without_scattering(Snapshot snapshot) {
 
 // What emits as it absorbs: j/σ (1 - e^-τ) with j = B σ (1 - albedo).
 TEST(GridEmission, AbsorbingBoxIsItsClosedForm) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const double extinction = 0.75, dimmed = 1 - std::exp(-3 * extinction);
     for (const BlackbodyKind kind : {BlackbodyKind::kelvin, BlackbodyKind::cycles, BlackbodyKind::pbrt}) {
         Scene scene;
@@ -95,7 +95,7 @@ TEST(GridEmission, AbsorbingBoxIsItsClosedForm) {
 
 // Nearly all places on a line through thick smoke are hidden in it: picked there alone, this would be 1.5 of noise.
 TEST(GridEmission, InThickSmokePathsSeeWhatTheyCollideWith) {
-    const Scratch scratch;
+    const TempFolder scratch;
     constexpr double extinction = 100;
     Scene scene;
     const Snapshot snapshot =
@@ -108,7 +108,7 @@ TEST(GridEmission, InThickSmokePathsSeeWhatTheyCollideWith) {
 
 // A whole ray meets the edges, where the temperature falls to 0 within a voxel.
 TEST(GridEmission, SteepEdgesAreResolved) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     const Snapshot snapshot = snapshot_with(scene, glowing(scratch, BlackbodyKind::kelvin, 0));
     const Ray through{{1, 1.2f, -2}, {0, 0, 1}, 10};
@@ -122,7 +122,7 @@ TEST(GridEmission, SteepEdgesAreResolved) {
     EXPECT_NEAR(traced.value.x, expected.x, sigmas * traced.error.x + 1e-3 * expected.x);
 }
 
-MediumSource fire(const Scratch& scratch, float extinction, vec3 albedo) {
+MediumSource fire(const TempFolder& scratch, float extinction, vec3 albedo) {
     MediumSource source = grid_source(
         scratch, "fire", tenth_volume(ivec3(40), [](ivec3 at) { return at.y < 30 ? 0.5f : 1.0f; }), extinction, albedo);
     source.temperature = property(scratch, "temperature", tenth_volume(ivec3(40), plume));
@@ -134,11 +134,11 @@ MediumSource fire(const Scratch& scratch, float extinction, vec3 albedo) {
 
 // Of a fire in smoke that does not scatter, every mode that follows fields agrees on every ray.
 TEST(GridEmission, MarchAgreesWithPathOnAFire) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     const Snapshot snapshot = snapshot_with(scene, fire(scratch, 0.8f, vec3(0)));
     const View view = view_of({6, 3, 7}, {2, 1, 2}, {64, 36});
-    const std::vector<Ray> rays = picture_rays(view, snapshot, 100);
+    const std::vector<Ray> rays = pixel_rays(view, snapshot, 100);
     const auto exact = run_mode("march", view, snapshot, exact_settings(), rays);
     for (const char* mode : {"march", "froxel", "shadow-map", "shadow-volume"}) {
         const auto found = run_mode(mode, view, snapshot, settings_for(Quality::preview), rays);
@@ -157,11 +157,11 @@ TEST(GridEmission, MarchAgreesWithPathOnAFire) {
 
 // The light of a plume that a smoke beside it scatters: aimed at, or met by chance, it is the same.
 TEST(GridEmission, LayersAddUpAndEmissionIsApart) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     const Snapshot snapshot = snapshot_with(scene, fire(scratch, 0.8f, vec3(0.5f)));
     const View view = view_of({6, 3, 7}, {2, 1, 2}, {16, 9});
-    const std::vector<Ray> rays = picture_rays(view, snapshot, 100);
+    const std::vector<Ray> rays = pixel_rays(view, snapshot, 100);
     for (const char* mode : {"march", "froxel", "shadow-map", "shadow-volume"}) {
         std::vector<vec3> parts;
         const auto whole = run_mode(mode, view, snapshot, settings_for(Quality::preview), rays);
@@ -175,7 +175,7 @@ TEST(GridEmission, LayersAddUpAndEmissionIsApart) {
 
 // A grid of numbers times a color, and a grid of colors, both free of the density.
 TEST(GridEmission, RadianceOfGrids) {
-    const Scratch scratch;
+    const TempFolder scratch;
     MediumSource source = grid_source(scratch, "glow", even(1), 0.5f);
     source.emission_grid = property(scratch, "emission", even(4));
     source.emission = vec3(1, 2, 3);
@@ -188,7 +188,7 @@ TEST(GridEmission, RadianceOfGrids) {
 
 // Sunlit fog that is white on one side and blue-green on the other.
 TEST(GridColor, EveryModeThatLooksPointByPointAgrees) {
-    const Scratch scratch;
+    const TempFolder scratch;
     MediumSource source = grid_source(scratch, "smoke", even(1), 0.5f, vec3(0.9f, 0.8f, 0.7f));
     source.albedo_grid =
         property(scratch, "Cd", tenth_volume(ivec3(40), [](ivec3 at) { return at.z < 20 ? 0.25f : 1; }));
@@ -216,7 +216,7 @@ TEST(GridColor, EveryModeThatLooksPointByPointAgrees) {
 
 // Seen from afar, a flame is a lamp of as many candela as it emits: ∫ j dV.
 TEST(GridEmission, AFlameLightsSmokeAsALampDoes) {
-    const Scratch scratch;
+    const TempFolder scratch;
     MediumSource source = grid_source(scratch, "flame", even(0), 0);
     SparseVolume flame = tenth_volume(ivec3(8), [](ivec3) { return hot; });
     flame.index_to_world = glm::scale(dmat4(1), dvec3(0.01));
@@ -258,7 +258,7 @@ TEST(GridEmission, AFlameLightsSmokeAsALampDoes) {
 
 // Aimed at or met by chance, light inside and beside a flame is the same: nothing is counted twice.
 TEST(GridEmission, AimingAtAFlameChangesNoMean) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     const Snapshot snapshot = snapshot_with(scene, fire(scratch, 3, vec3(0.9f)));
     for (const Ray& ray : {Ray{{2, 0.6f, -2}, {0, 0, 1}, 20}, Ray{{-2, 3.2f, 2}, {1, 0, 0}, 20}}) {
@@ -267,8 +267,8 @@ TEST(GridEmission, AimingAtAFlameChangesNoMean) {
         EmissiveBricks dark; // aims at a corner without light
         dark.fields = take_fields(unaimed->snapshot, {}, {}).fields;
         dark.bricks = {{0, 0}}, dark.cumulative = {1};
-        dark.chances.resize(dark.fields.size());
-        for (auto& field : dark.chances) field.per_volume.assign(1 << 20, 0), field.line_scale = 1;
+        dark.pdfs.resize(dark.fields.size());
+        for (auto& field : dark.pdfs) field.per_volume.assign(1 << 20, 0), field.line_scale = 1;
         unaimed->fire = std::make_shared<const EmissiveBricks>(std::move(dark));
         const RayEstimate by_chance = estimate_ray(
             [unaimed](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*unaimed, batch, results); },
@@ -283,7 +283,7 @@ TEST(GridEmission, AimingAtAFlameChangesNoMean) {
 
 // Voxels without a color do not darken those beside them.
 TEST(GridColor, EdgesOfAColorDoNotDarken) {
-    const Scratch scratch;
+    const TempFolder scratch;
     MediumSource source = grid_source(scratch, "smoke", even(1), 0.5f, vec3(0.8f));
     source.albedo_grid = property(scratch, "Cd", tenth_volume(ivec3(40, 40, 20), [](ivec3) { return 0.5f; }));
     Scene scene;

@@ -17,7 +17,7 @@ TEST(History, GoesOnWhileThePictureDoes) {
     View view;
     Settings settings;
     History history;
-    const auto next = [&] { return follow(history, view, snapshot, settings); };
+    const auto next = [&] { return update_history(history, view, snapshot, settings); };
     EXPECT_EQ(next(), 0);
     EXPECT_EQ(next(), 1);
     view.camera.position.x += 0.5f;

@@ -29,13 +29,13 @@ View lens_view(float radius) {
 }
 
 // A spot before a box in fog, far behind what is in focus.
-Stage hazy_stage(bool with_box = true) {
+TestScene hazy_stage(bool with_box = true) {
     std::vector<Mesh> meshes{floor_of(-1, 6)};
     if (with_box) meshes.push_back(box_of({-0.4f, 0.4f, -0.4f}, {0.4f, 1, 0.4f}));
     const Box fog{vec3(-3, -1, -3), vec3(3, 4, 3)};
     Light lamp = point_light({0.2f, 2.2f, -0.3f}, 20);
     lamp.name = "lamp";
-    return stage_of({homogeneous_medium(0.2f, fog, forward_phase(0.3f))}, {lamp}, std::move(meshes));
+    return make_scene({homogeneous_medium(0.2f, fog, forward_phase(0.3f))}, {lamp}, std::move(meshes));
 }
 
 // One ray of the lens for each pixel, up to the first surface.
@@ -43,7 +43,7 @@ std::vector<Ray> lens_rays(const View& view, const Snapshot& snapshot) {
     std::vector<Ray> rays;
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {
-            rays.push_back(sample_ray(view, vec2(x, y) + 0.5f, sample_place(view, {x, y}, 0)));
+            rays.push_back(sample_ray(view, vec2(x, y) + 0.5f, sample_index(view, {x, y}, 0)));
             Hits hits;
             hits.instance.fill(-1);
             snapshot.occluders->closest({&rays.back(), 1}, 0, hits);
@@ -59,7 +59,7 @@ Settings quick_settings() {
 }
 
 TEST(LensFog, MarchFindsShadowsFromEveryPointOfTheLens) {
-    const Stage stage = hazy_stage();
+    const TestScene stage = hazy_stage();
     const View view = lens_view(0.3f);
     const std::vector<Ray> rays = lens_rays(view, stage.snapshot);
     const auto intervals = run_mode("march", view, stage.snapshot, exact_settings(), rays);
@@ -69,7 +69,7 @@ TEST(LensFog, MarchFindsShadowsFromEveryPointOfTheLens) {
 }
 
 TEST(LensFog, MarchAgreesWithPath) {
-    const Stage stage = hazy_stage();
+    const TestScene stage = hazy_stage();
     const View view = lens_view(0.3f);
     const std::vector<Ray> rays = lens_rays(view, stage.snapshot);
     const double truth = mean_of(run_mode("march", view, stage.snapshot, exact_settings(), rays));
@@ -92,23 +92,23 @@ TEST(LensFog, MarchAgreesWithPath) {
 }
 
 TEST(LensFog, TechniquesThatFollowRaysAreRight) {
-    const Stage open = hazy_stage(false), shadowed = hazy_stage();
+    const TestScene open = hazy_stage(false), shadowed = hazy_stage();
     const View view = lens_view(0.3f);
     for (const auto& [mode, stage, most] : {std::tuple{"cone", &open, 0.01}, {"shadow-map", &shadowed, 0.06}}) {
         SCOPED_TRACE(mode);
         const std::vector<Ray> rays = lens_rays(view, stage->snapshot);
         const auto truth = run_mode("march", view, stage->snapshot, exact_settings(), rays);
         EXPECT_LT(relative_rmse(run_mode(mode, view, stage->snapshot, quick_settings(), rays), truth), most);
-        EXPECT_FALSE(
-            says(find_mode(mode).limitations(view, stage->snapshot, quick_settings()), limitation::fog_through_middle));
+        EXPECT_FALSE(has_limitation(find_mode(mode).limitations(view, stage->snapshot, quick_settings()),
+                                    limitation::fog_through_middle));
     }
 }
 
 // What they show of a ray of the lens is what they show of the pinhole's ray to the same point in focus.
 TEST(LensFog, OthersSeeItThroughTheMiddle) {
-    const Stage stage = hazy_stage();
+    const TestScene stage = hazy_stage();
     const View view = lens_view(0.3f), pinhole = lens_view(0);
-    const std::vector<Ray> sharp = picture_rays(pinhole, stage.snapshot);
+    const std::vector<Ray> sharp = pixel_rays(pinhole, stage.snapshot);
     std::vector<Ray> rays = lens_rays(view, stage.snapshot);
     for (size_t i = 0; i < rays.size(); ++i) { // as deep as the pinhole's rays
         const vec3 forward = view.camera.forward;
@@ -124,7 +124,7 @@ TEST(LensFog, OthersSeeItThroughTheMiddle) {
 }
 
 TEST(LensFog, TheBlurThatIsMissingIsTheLamps) {
-    const Stage stage = hazy_stage();
+    const TestScene stage = hazy_stage();
     const View view = lens_view(0.3f);
     const double expected = static_cast<double>(blur_diameter(view.camera, size, 9)); // where the fog ends
     for (const char* mode : {"froxel", "shadow-volume", "billboard", "radial-blur"}) {
@@ -136,13 +136,13 @@ TEST(LensFog, TheBlurThatIsMissingIsTheLamps) {
         EXPECT_EQ(found->severity, Severity::degraded);
         EXPECT_GT(found->amounts[0], 0.9 * static_cast<double>(blur_diameter(view.camera, size, 6.3f)));
         EXPECT_LT(found->amounts[0], 1.3 * expected);
-        EXPECT_FALSE(says(find_mode(mode).limitations(lens_view(0), stage.snapshot, quick_settings()),
-                          limitation::fog_through_middle));
+        EXPECT_FALSE(has_limitation(find_mode(mode).limitations(lens_view(0), stage.snapshot, quick_settings()),
+                                    limitation::fog_through_middle));
     }
 }
 
 TEST(LensFog, APictureOfTheFogIsNotUsed) {
-    const Stage stage = hazy_stage();
+    const TestScene stage = hazy_stage();
     const View view = lens_view(0.3f);
     Settings half = quick_settings();
     half.of<ShadowMapSettings>().fog_resolution = Resolution::half;
@@ -150,7 +150,8 @@ TEST(LensFog, APictureOfTheFogIsNotUsed) {
     const auto a = run_mode("shadow-map", view, stage.snapshot, half, rays);
     const auto b = run_mode("shadow-map", view, stage.snapshot, quick_settings(), rays);
     EXPECT_EQ(rms_difference(a, b), 0);
-    EXPECT_TRUE(says(find_mode("shadow-map").limitations(view, stage.snapshot, half), limitation::no_fog_picture));
+    EXPECT_TRUE(
+        has_limitation(find_mode("shadow-map").limitations(view, stage.snapshot, half), limitation::no_fog_picture));
 }
 }
 }

@@ -34,7 +34,7 @@ Light projector(std::shared_ptr<const Gobo> gobo, std::shared_ptr<const IesProfi
 const View picture = view_of({0, 0.2f, 2.9f}, vec3(0), {32, 24});
 
 std::vector<Scatter> seen_by(std::string_view mode, const Snapshot& snapshot, Settings settings = {}) {
-    return run_mode(mode, picture, snapshot, settings, picture_rays(picture, snapshot));
+    return run_mode(mode, picture, snapshot, settings, pixel_rays(picture, snapshot));
 }
 std::vector<Scatter> truth(const Snapshot& snapshot) { return seen_by("march", snapshot, exact_settings()); }
 
@@ -126,7 +126,7 @@ TEST(LightFilters, GridFogIsLitThroughThem) {
     light = filtered_light(light, nullptr, light.filter->gobo);
     const Snapshot snapshot = snapshot_of({grid}, {light});
     const View view = view_of({0.5f, 0.6f, 3}, vec3(0.5f), {32, 24}, 0.5f);
-    const std::vector<Ray> rays = picture_rays(view, snapshot);
+    const std::vector<Ray> rays = pixel_rays(view, snapshot);
     const std::vector<Scatter> exact = run_mode("march", view, snapshot, exact_settings(), rays);
     for (const auto& [mode, bound] : {std::pair{"march", 0.06}, {"shadow-map", 0.1}, {"froxel", 0.12}})
         EXPECT_LT(relative_rmse(run_mode(mode, view, snapshot, {}, rays), exact), bound) << mode;
@@ -138,14 +138,15 @@ TEST(LightFilters, TechniquesSayWhatTheyCannotShow) {
         return find_mode(mode).limitations(picture, snapshot, {});
     };
     for (const char* mode : {"march", "shadow-volume", "shadow-map"})
-        EXPECT_TRUE(says(of(mode, fine), limitation::sampled_gobo)) << mode;
-    for (const char* mode : {"froxel", "cone"}) EXPECT_TRUE(says(of(mode, fine), limitation::blurred_filter)) << mode;
+        EXPECT_TRUE(has_limitation(of(mode, fine), limitation::sampled_gobo)) << mode;
+    for (const char* mode : {"froxel", "cone"})
+        EXPECT_TRUE(has_limitation(of(mode, fine), limitation::blurred_filter)) << mode;
     for (const char* mode : {"billboard", "radial-blur"})
-        EXPECT_TRUE(says(of(mode, fine), limitation::mean_filter)) << mode;
-    EXPECT_FALSE(says(of("froxel", fine), limitation::sampled_gobo));
+        EXPECT_TRUE(has_limitation(of(mode, fine), limitation::mean_filter)) << mode;
+    EXPECT_FALSE(has_limitation(of("froxel", fine), limitation::sampled_gobo));
     const Snapshot broad = snapshot_of({homogeneous_medium(0.25f, room)}, {projector(checkerboard(8, 2, false))});
-    EXPECT_FALSE(says(of("march", broad), limitation::sampled_gobo));
-    EXPECT_FALSE(says(of("froxel", broad), limitation::blurred_filter));
+    EXPECT_FALSE(has_limitation(of("march", broad), limitation::sampled_gobo));
+    EXPECT_FALSE(has_limitation(of("froxel", broad), limitation::blurred_filter));
     // Half of the board is white, half is 20 / 255: its spread over its mean.
     const Snapshot board = snapshot_of({homogeneous_medium(0.25f, room)}, {projector(checkerboard(96, 4, false))});
     for (const Limitation& one : of("billboard", board)) {

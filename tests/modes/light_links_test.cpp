@@ -85,7 +85,7 @@ TEST(LightLinks, ABulbWithoutShadowsIsNotThereForTheLight) {
         add_bulb(flagged, above, false), add_bulb(enclosed, above, true);
         const Snapshot without = at_start(bare), with = at_start(flagged), dark = at_start(enclosed);
         const View view = camera_view();
-        const std::vector<Ray> rays = picture_rays(view, with);
+        const std::vector<Ray> rays = pixel_rays(view, with);
         for (const char* mode : with_shadows) {
             SCOPED_TRACE(std::string(mode) + " radius " + std::to_string(radius));
             const auto expected = run_mode(mode, view, without, quick_settings(), rays);
@@ -102,7 +102,7 @@ TEST(LightLinks, EveryWayToFindShadowsOfAMarch) {
     Scene bare = room({lamp("lamp", above), lamp("other", {1, 0.5f, 1}, 0.05f)}), flagged = bare;
     add_bulb(flagged, above, false);
     const Snapshot without = at_start(bare), with = at_start(flagged);
-    const std::vector<Ray> rays = picture_rays(camera_view(), with);
+    const std::vector<Ray> rays = pixel_rays(camera_view(), with);
     for (const Visibility visibility : {Visibility::rays, Visibility::maps, Visibility::intervals, Visibility::exact}) {
         Settings settings = quick_settings();
         settings.march.visibility = visibility;
@@ -119,7 +119,7 @@ TEST(LightLinks, AnObjectShadowsTheLightsThatItIsLinkedTo) {
     for (LightSource& light : bare.lights) light.casters = {true, false};
     const View view = camera_view();
     const Snapshot all = at_start(both), some = at_start(linked), none = at_start(bare);
-    const std::vector<Ray> rays = picture_rays(view, all);
+    const std::vector<Ray> rays = pixel_rays(view, all);
     const size_t parts = part_count(2);
     for (const char* mode : {"march", "froxel", "shadow-map", "shadow-volume"}) {
         SCOPED_TRACE(mode);

@@ -20,10 +20,10 @@ const vec3 radiance(2, 3, 1);
 const Medium far_fog = homogeneous_medium(0.05f, {{-1, -6, -1}, {1, -4, 1}}, forward_phase(0.3f));
 
 // Meshes that glow, and others that do not.
-Stage stage_with(std::vector<Mesh> glowing, std::vector<Mesh> others = {}, std::vector<Medium> media = {far_fog}) {
+TestScene stage_with(std::vector<Mesh> glowing, std::vector<Mesh> others = {}, std::vector<Medium> media = {far_fog}) {
     const size_t dark = others.size();
     others.insert(others.end(), glowing.begin(), glowing.end());
-    Stage stage = stage_of(std::move(media), {}, others);
+    TestScene stage = make_scene(std::move(media), {}, others);
     Material material = lambert(vec3(0));
     material.name = "lamp", material.emission = radiance;
     stage.scene->materials = {lambert(vec3(1)), material};
@@ -99,28 +99,28 @@ TEST(MeshLamps, AtMostFourStandForManyMeshesWithAllTheirLight) {
     double sum = 0;
     for (const Light& lamp : found->lamps) sum += candela(lamp, {0, -1, 0}).y;
     EXPECT_NEAR(sum, 9 * 3, 0.02 * 9 * 3);
-    EXPECT_EQ(mesh_lamps(stage_of({far_fog}, {}, {square()}).snapshot), nullptr) << "nothing glows";
+    EXPECT_EQ(mesh_lamps(make_scene({far_fog}, {}, {square()}).snapshot), nullptr) << "nothing glows";
 }
 
 // A camera that sees the fog far below the lamps.
 View far_view() { return view_of({0, -5, 5}, {0, -5, 0}); }
 
 // Some rays through the fog.
-std::vector<Ray> some_rays(const Stage& stage) {
-    const std::vector<Ray> all = picture_rays(far_view(), stage.snapshot, 10);
+std::vector<Ray> some_rays(const TestScene& stage) {
+    const std::vector<Ray> all = pixel_rays(far_view(), stage.snapshot, 10);
     std::vector<Ray> some;
     for (size_t i = all.size() / 3; i < all.size(); i += 101) some.push_back(all[i]);
     return some;
 }
 
-double fog_light_of(std::string_view mode, const Stage& stage) {
+double fog_light_of(std::string_view mode, const TestScene& stage) {
     Settings settings = settings_for(Quality::preview);
     settings.fluence.orders = 1;
     return mean_of(run_mode(mode, far_view(), stage.snapshot, settings, some_rays(stage)));
 }
 
 // Of each ray the mean of many samples.
-double marched_fog_light(const Stage& stage) {
+double marched_fog_light(const TestScene& stage) {
     const ScatterFunction march = find_mode("march").prepare(View{}, stage.snapshot, {}, nullptr);
     double sum = 0;
     const std::vector<Ray> rays = some_rays(stage);
@@ -133,7 +133,7 @@ constexpr const char* with_lamps[] = {"froxel", "shadow-map", "shadow-volume", "
 TEST(MeshLamps, FarFogIsAsInMarch) {
     for (const bool box : {false, true}) {
         const Mesh glowing = box ? box_of({-0.3f, -0.2f, -0.3f}, {0.3f, 0.2f, 0.3f}) : square();
-        const Stage stage = stage_with({glowing});
+        const TestScene stage = stage_with({glowing});
         const double march = marched_fog_light(stage);
         EXPECT_GT(march, 0);
         for (const char* mode : with_lamps)
@@ -142,12 +142,12 @@ TEST(MeshLamps, FarFogIsAsInMarch) {
 }
 
 TEST(MeshLamps, OthersShadowThemAndTheirLightCountsAsEmission) {
-    const Stage shaded = stage_with({square()}, {quad({-9, -1, -9}, {18, 0, 0}, {0, 0, 18})}),
-                open = stage_with({square()});
+    const TestScene shaded = stage_with({square()}, {quad({-9, -1, -9}, {18, 0, 0}, {0, 0, 18})}),
+                    open = stage_with({square()});
     for (const char* mode : {"froxel", "shadow-map", "shadow-volume"})
         EXPECT_LT(fog_light_of(mode, shaded), 0.02 * fog_light_of(mode, open)) << mode;
     const View view = far_view();
-    const std::vector<Ray> rays = picture_rays(view, open.snapshot, 10);
+    const std::vector<Ray> rays = pixel_rays(view, open.snapshot, 10);
     for (const char* mode : with_lamps) {
         std::vector<vec3> parts;
         const auto whole = run_mode(mode, view, open.snapshot, settings_for(Quality::preview), rays, &parts);

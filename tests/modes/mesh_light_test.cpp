@@ -21,9 +21,9 @@ constexpr double sigmas = 4.5;
 const vec3 radiance(2, 3, 1);
 
 // A square of 1 m at y = 1 that glows on both sides, over fog below it; with more surfaces that do not.
-Stage glowing_stage(std::vector<Medium> media, std::vector<Mesh> others = {}) {
+TestScene glowing_stage(std::vector<Medium> media, std::vector<Mesh> others = {}) {
     others.push_back(quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}));
-    Stage stage = stage_of(std::move(media), {}, others);
+    TestScene stage = make_scene(std::move(media), {}, others);
     Material glowing = lambert(vec3(0));
     glowing.name = "lamp", glowing.emission = radiance;
     stage.scene->materials = {lambert(vec3(1)), glowing};
@@ -63,7 +63,7 @@ TEST(MeshLight, FogScattersOnceAsByQuadrature) {
                            Ray{{-2, 1.6f, 0}, glm::normalize(vec3(1, -0.02f, 0.03f)), 4}})
         for (const float extinction : {0.3f, 1.5f})
             for (const Phase& phase : {Phase{PhaseKind::isotropic}, forward_phase(0.6f)}) {
-                const Stage stage = glowing_stage({homogeneous_medium(extinction, {vec3(-50), vec3(50)}, phase)});
+                const TestScene stage = glowing_stage({homogeneous_medium(extinction, {vec3(-50), vec3(50)}, phase)});
                 const dvec3 expected = light_by_quadrature(double{extinction}, phase, ray);
                 for (const RayEstimate& found :
                      {traced(stage.snapshot, ray, 1 << 12, 1), marched_light(stage.snapshot, ray, 1 << 11)})
@@ -77,7 +77,7 @@ TEST(MeshLight, FogScattersOnceAsByQuadrature) {
 TEST(MeshLight, MarchIsAsPathsOfOneOrder) {
     const Medium grid = medium_of(unit_volume(16, [](vec3 p) { return 0.2f + p.x * p.y; }), 3);
     const Medium colored = homogeneous_medium(0.5f, {vec3(-1), vec3(2)}, forward_phase(0.8f), vec3(0.9f, 0.5f, 0.2f));
-    const Stage stage = glowing_stage({grid, colored}, {shade(0.3f, 0.8f)});
+    const TestScene stage = glowing_stage({grid, colored}, {roof(0.3f, 0.8f)});
     for (const Ray& ray : {Ray{{0.3f, 0.4f, 2}, glm::normalize(vec3(0.05f, -0.1f, -1)), 4},
                            Ray{{0.1f, 0.9f, 2}, glm::normalize(vec3(-0.08f, 0.03f, -1)), 4}}) {
         const RayEstimate paths = traced(stage.snapshot, ray, 1 << 12, 1);
@@ -104,7 +104,7 @@ TEST(MeshLight, SurfacesGetThePublishedIrradiance) {
     for (const bool shaded : {false, true}) {
         std::vector<Mesh> others{floor_of(0, 1, 0)};
         if (shaded) others.push_back(quad({0, 0.5f, -9}, {9, 0, 0}, {0, 0, 18}));
-        const Stage stage = glowing_stage({}, others);
+        const TestScene stage = glowing_stage({}, others);
         const double expected = (shaded ? 2 : 4) * quarter;
         vec3 found(0);
         add_emitted_light(emitters_of(stage.snapshot), stage.snapshot, {&point, 1}, u, {&found, 1});
@@ -113,19 +113,21 @@ TEST(MeshLight, SurfacesGetThePublishedIrradiance) {
 }
 
 TEST(MeshLight, ModesSayWhatBecomesOfIt) {
-    Stage stage = glowing_stage({homogeneous_medium(0.5f, {vec3(-3), vec3(3)})});
+    TestScene stage = glowing_stage({homogeneous_medium(0.5f, {vec3(-3), vec3(3)})});
     const View view = view_of({0.3f, 0.4f, 4}, {0, 0, 0});
     for (const Mode& mode : modes()) {
         const bool without = mode.name == "billboard" || mode.name == "radial-blur";
         const bool lamps = !without && mode.name != "march" && mode.name != "path";
-        EXPECT_EQ(says(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_no_fog), without)
+        EXPECT_EQ(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_no_fog),
+                  without)
             << mode.name;
-        EXPECT_EQ(says(mode.limitations(view, stage.snapshot, {}), limitation::lamps_for_surfaces), lamps) << mode.name;
-        EXPECT_FALSE(says(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_nothing));
+        EXPECT_EQ(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::lamps_for_surfaces), lamps)
+            << mode.name;
+        EXPECT_FALSE(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_nothing));
     }
     stage.scene->materials[1].alpha_mode = AlphaMode::blend;
     for (const Mode& mode : modes())
-        EXPECT_EQ(says(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_nothing),
+        EXPECT_EQ(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_nothing),
                   mode.name != "path")
             << mode.name;
 }

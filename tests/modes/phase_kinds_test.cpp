@@ -59,7 +59,7 @@ struct LampRays {
 
 // What a rounded cosine leaves of a narrow lobe, as a share: floats tell 1 - c to 1e-7, or to a hundredth of a degree.
 double rounding_of(const Phase& phase, double angle) {
-    const double gap = 1 - double(narrowest_lobe(phase));
+    const double gap = 1 - double(narrowest_g(phase));
     return 1.5 * 2e-7 / (gap * gap + angle * angle);
 }
 
@@ -125,9 +125,9 @@ TEST(PhaseKinds, FroxelsSayThatTheyBlurTheGlowOfASun) {
             snapshot_of({homogeneous_medium(0.1f, box, phase)}, {sun_light({0.01f, 0.02f, 1}, 5)});
         return froxel_limitations(seen, snapshot, settings_for(Quality::preview));
     };
-    EXPECT_TRUE(says(said(mie_phase(20), view), limitation::coarse_glow));
-    EXPECT_FALSE(says(said(mie_phase(20), beside), limitation::coarse_glow)) << "the sun is not in the image";
-    EXPECT_FALSE(says(said(forward_phase(0.8f), view), limitation::coarse_glow));
+    EXPECT_TRUE(has_limitation(said(mie_phase(20), view), limitation::coarse_glow));
+    EXPECT_FALSE(has_limitation(said(mie_phase(20), beside), limitation::coarse_glow)) << "the sun is not in the image";
+    EXPECT_FALSE(has_limitation(said(forward_phase(0.8f), view), limitation::coarse_glow));
     for (const Limitation& one : said(mie_phase(20), view))
         if (one.is(limitation::coarse_glow)) {
             EXPECT_NEAR(one.amounts[0], 0.77 * 0.00539 * 180 / std::numbers::pi, 0.01);
@@ -144,7 +144,7 @@ TEST(PhaseKinds, OneOrderOfPathIsTheMarch) {
         const Snapshot snapshot =
             snapshot_of({cloud, homogeneous_medium(0.3f, {vec3(-1), vec3(2)}, forward_phase(0.3f))},
                         {point_light({0.3f, 0.6f, -1.5f}, 4), sun_light({0.2f, -1, 0.5f}, 2)});
-        const std::vector<Ray> rays = picture_rays(view, snapshot, 10);
+        const std::vector<Ray> rays = pixel_rays(view, snapshot, 10);
         const auto exact = marched(snapshot, exact_settings(), rays);
         double traced_sum = 0, exact_sum = 0, variance = 0;
         for (size_t i = 0; i < rays.size(); ++i) {
@@ -224,7 +224,7 @@ TEST(PhaseKinds, ManyOrdersOfTheMarchAreThoseOfPath) {
         Settings settings = settings_for(Quality::final);
         settings.fluence.orders = all_orders, settings.fluence.paths = 1 << 19, settings.fluence.resolution = 16;
         const Snapshot snapshot = fog(one.extinction, one.phase);
-        const std::vector<Ray> rays = picture_rays(view, snapshot, 10);
+        const std::vector<Ray> rays = pixel_rays(view, snapshot, 10);
         const auto seen = marched(snapshot, settings, rays);
         Settings exact = exact_settings();
         exact.fluence = settings.fluence;

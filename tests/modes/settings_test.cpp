@@ -13,7 +13,7 @@ namespace tyndall {
 namespace {
 std::string refusal(std::string_view assignment) {
     Settings settings;
-    return error_text(ExitCode::usage, [&] { apply_setting(settings, assignment); });
+    return error_message(ExitCode::usage, [&] { apply_setting(settings, assignment); });
 }
 
 TEST(Settings, EveryRowReadsBackWhatWasSet) {
@@ -56,7 +56,7 @@ TEST(Modes, TheTableFindsEachModeAndNamesThemAll) {
         EXPECT_EQ(&find_mode(mode.name), &mode);
         EXPECT_FALSE(mode.summary.empty());
     }
-    EXPECT_THAT(error_text(ExitCode::usage, [] { find_mode("marhc"); }), testing::HasSubstr("march"));
+    EXPECT_THAT(error_message(ExitCode::usage, [] { find_mode("marhc"); }), testing::HasSubstr("march"));
 }
 }
 }

@@ -30,7 +30,7 @@ TEST(Terms, OffIsASceneWithoutThem) {
     cloud.optics.emission.radiance = vec3(0.1f);
     const Snapshot snapshot = snapshot_of({cloud}, {point_light({1.5f, 1.3f, 0.4f}, 1)}, vec3(0.2f));
     const View view = view_of({0.5f, 0.8f, 3}, {0.5f, 0.5f, 0.5f}, {32, 18});
-    const std::vector<Ray> rays = picture_rays(view, snapshot, 10);
+    const std::vector<Ray> rays = pixel_rays(view, snapshot, 10);
     int compared = 0;
     for (const Mode& mode : modes()) {
         for (const WithoutTerm& term : terms) {

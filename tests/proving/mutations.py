@@ -2,9 +2,11 @@
 other: a test or the proving ground must find each of them.
 
     mutations.py -o FOLDER [--only NAME,...] [--seeds 4,18,27,42,55,69] [--truths DIR]
+    mutations.py --check
 
 Works on a copy of the committed files in FOLDER, which it builds. Prints who found each fault; ends with 1 where one was
-found by nobody, or where the copy fails without a fault."""
+found by nobody, or where the copy fails without a fault. --check only looks whether the code still has the lines that the
+faults replace."""
 import argparse
 import dataclasses
 import io
@@ -49,7 +51,7 @@ FAULTS = [
           "drawn.push_back({corner(i), chance, 1});"),
     Fault("check-with-the-pilots-samples", ADAPTIVE + "goal.cpp", "chances(), salt,", "chances(), 0 * salt,"),
     Fault("rounds-of-the-same-samples", ADAPTIVE + "target_rounds.h",
-          "if (round > 0) result.seed = hash(view.seed, static_cast<uint32_t>(round));", ""),
+          "if (numbers > 0) result.seed = hash(view.seed, static_cast<uint32_t>(numbers));", ""),
     Fault("integrator-left-out", "src/render/frame/frame.cpp", "integrator ? integrator->error : none", "none"),
     Fault("orders-left-out", "src/render/frame/frame.cpp", "orders ? orders->pixels : none", "none"),
     Fault("orders-of-one-product", ADAPTIVE + "orders.cpp", "channel_mean(of.sums[i] * of.sums[i] - of.squares[i])", "channel_mean(of.sums[i] * of.sums[i])"),
@@ -62,8 +64,8 @@ FAULTS = [
     Fault("leaf-counted-twice", "src/render/frame/merge.cpp",
           "sums = node_sums(nodes, {node.section, node.level - 1, 2 * node.index}, first, count);",
           "sums = node_sums(nodes, {node.section, node.level - 1, 2 * node.index + 1}, first, count);", OF_PARTS),
-    Fault("groups-with-one-scramble", "src/trace/view.cpp", "return {batch ? hash(key, static_cast<uint32_t>(batch)) : key,",
-          "return {key,", OF_PARTS),
+    Fault("groups-with-one-scramble", "src/trace/view.cpp", "return {batch ? hash(key, batch) : key, index};",
+          "return {key, index};", OF_PARTS),
     Fault("planned-integrator-left-out", ADAPTIVE + "planned.cpp", "if (!planned.is_checked()) return;", "return stats.integrator.reset();"),
     Fault("planned-orders-left-out", ADAPTIVE + "planned.cpp", "if (planned.orders) stats.orders = planned.orders;", ""),
     Fault("variances-known-for-certain", "src/render/frame/layers.cpp", "squared_error += square;",
@@ -75,7 +77,7 @@ FAULTS = [
     of_light("glowing-faces-without-cosine", "src/integrate/lights/mesh_light.cpp",
              "std::abs(glm::dot(target.normal, direction)) *", "", r"modes\.mesh_light"),
     of_light("faces-by-angle-alone", "src/integrate/lights/face_light.cpp",
-             "(distances.angles.density(t) + distances.fog.density(extinction, passing))", "distances.angles.density(t)",
+             "(distances.angles.density(t) + distances.fog.density(extinction, transmittance))", "distances.angles.density(t)",
              r"modes\.face_light"),
     of_light("rectangles-off-their-middle", "src/scene/spherical_rectangle.cpp", "middle - half, high = middle + half;",
              "middle - half, high = middle + 0.9 * half;", r"modes\.face_light|scene\.area_shape"),
@@ -137,13 +139,23 @@ def who_finds(folder, options, tests, targets):
     return "" if proven.returncode == 0 else "proving ground"
 
 
+def misfit(fault, folder):
+    """Why a fault cannot be planted; empty if it can."""
+    times = (folder / fault.file).read_text().count(fault.right)
+    return "" if times == 1 else f"{fault.name}: {fault.file} holds '{fault.right}' {times} times"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    wanted = parser.add_mutually_exclusive_group(required=True)
+    wanted.add_argument("-o", "--output", type=pathlib.Path)
+    wanted.add_argument("--check", action="store_true")
     parser.add_argument("--only", type=lambda text: text.split(","), default=[])
     parser.add_argument("--seeds", default="4,18,27,42,55,69")
     parser.add_argument("--truths", type=pathlib.Path, help="a folder that keeps truths from run to run")
     options = parser.parse_args()
+    if options.check:
+        sys.exit("\n".join(misfit(fault, SOURCE) for fault in FAULTS if misfit(fault, SOURCE)) or 0)
     folder = options.output.resolve()
     folder.mkdir(parents=True, exist_ok=True)
     copy_committed(folder)
@@ -158,8 +170,8 @@ def main():
             continue
         place = folder / fault.file
         text = place.read_text()
-        if text.count(fault.right) != 1:
-            sys.exit(f"{fault.name}: {fault.file} holds '{fault.right}' {text.count(fault.right)} times")
+        if misfit(fault, folder):
+            sys.exit(misfit(fault, folder))
         place.write_text(text.replace(fault.right, fault.wrong))
         try:
             found = who_finds(folder, options, fault.tests, fault.targets)

@@ -25,7 +25,7 @@ const std::filesystem::path source_dir = TYNDALL_SOURCE_DIR;
 std::vector<Scatter> fog_light(const Snapshot& snapshot, const Camera& camera, const Settings& settings) {
     View view;
     view.camera = camera, view.size = {64, 36};
-    return run_mode("march", view, snapshot, settings, picture_rays(view, snapshot, 20));
+    return run_mode("march", view, snapshot, settings, pixel_rays(view, snapshot, 20));
 }
 
 TEST(ExampleScenes, MarchConvergesOnTheWindow) {
@@ -65,7 +65,7 @@ TEST(ExampleScenes, HalvingTheBoundsOfTheReferenceChangesNothing) {
 }
 
 TEST(ExampleScenes, RecipeRenderedDirectlyEqualsItsBake) {
-    const Scratch scratch;
+    const TempFolder scratch;
     FogRecipe recipe = read_recipe(source_dir / "volumes/lamp_dust.json");
     recipe.voxel_size = 0.1f;
     Progress progress(ProgressStyle::none, "bake", 1);
@@ -83,7 +83,7 @@ TEST(ExampleScenes, RecipeRenderedDirectlyEqualsItsBake) {
 }
 
 TEST(ExampleScenes, AFireRenderedDirectlyEqualsItsBake) {
-    const Scratch scratch;
+    const TempFolder scratch;
     FogRecipe recipe = read_recipe(source_dir / "volumes/campfire.json");
     recipe.voxel_size = 0.05f;
     Progress progress(ProgressStyle::none, "bake", 1);

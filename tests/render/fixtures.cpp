@@ -57,12 +57,12 @@ Mode mode_of(ScatterFunction (*prepare)(const View&, const Snapshot&, const Sett
     return {"test", "a mode of the tests", "tests", Accuracy::artistic, Surfaces::shared, no_limitations, prepare};
 }
 
-ScatterFunction prepare_glow(const View&, const Snapshot& snapshot, const Settings&, History*) {
+ScatterFunction prepare_emissive(const View&, const Snapshot& snapshot, const Settings&, History*) {
     const float extinction = snapshot.media.empty() ? 0 : grey_extinction(snapshot.media[0].optics);
     return [extinction, lights = snapshot.lights.size()](const RayBatch& batch, std::span<Scatter> results) {
         for (size_t i = 0; i < batch.rays.size(); ++i) {
             const float transmittance = std::exp(-extinction * batch.rays[i].t_max);
-            results[i] = {glow * (1 - transmittance), transmittance, 1, 3};
+            results[i] = {fog_radiance * (1 - transmittance), transmittance, 1, 3};
             for (size_t l = 0; l < lights && !batch.parts.empty(); ++l)
                 batch.part(i, l) = results[i].radiance / static_cast<float>(lights);
         }

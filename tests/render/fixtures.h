@@ -36,11 +36,11 @@ std::vector<Limitation> no_limitations(const View&, const Snapshot&, const Setti
 
 Mode mode_of(ScatterFunction (*prepare)(const View&, const Snapshot&, const Settings&, History*));
 
-// Fog of the first medium's extinction all along the ray, glowing so that endless fog has radiance `glow`. Each light
-// is said to give an equal part.
-inline constexpr vec3 glow{0.5f, 0.25f, 1.0f};
+// Fog of the first medium's extinction all along the ray, glowing so that endless fog has radiance `fog_radiance`. Each
+// light is said to give an equal part.
+inline constexpr vec3 fog_radiance{0.5f, 0.25f, 1.0f};
 
-ScatterFunction prepare_glow(const View&, const Snapshot& snapshot, const Settings&, History*);
+ScatterFunction prepare_emissive(const View&, const Snapshot& snapshot, const Settings&, History*);
 
 ScatterFunction prepare_nothing(const View&, const Snapshot&, const Settings&, History*);
 

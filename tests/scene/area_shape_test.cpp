@@ -63,14 +63,14 @@ TEST(AreaShape, PicturesColorTheFaceAndTheLampThatStandsForIt) {
     const Light whole = rectangle_light({0, 0, 0}, {0, 0, 1}, {2, 1}, vec3(10));
     const Light light = picture_light(whole, make_gobo(image));
     expect_near(light.intensity, vec3(4, 2, 0), 1e-5f);
-    const auto nits = [&](vec3 at) { return radiance_of(light) * face_picture(*light.area, at); };
+    const auto nits = [&](vec3 at) { return radiance_of(light) * face_texture(*light.area, at); };
     expect_near(nits({-0.9f, 0.45f, 0}), vec3(8, 0, 0), 1e-4f);
     expect_near(nits({0.9f, 0.45f, 0}), vec3(0, 4, 0), 1e-4f);
     expect_near(nits({-0.9f, -0.45f, 0}), vec3(0), 1e-4f);
     // Luminances of .2126 x .8 and .7152 x .4: the middle lies on the green side, and in the upper half.
     const float red = 0.2126f * 0.8f, green = 0.7152f * 0.4f;
     expect_near(light.position, vec3(0.5f * (green - red) / (green + red), 0.25f, 0), 1e-5f);
-    EXPECT_EQ(face_picture(*whole.area, {0.3f, 0.2f, 0}), vec3(1));
+    EXPECT_EQ(face_texture(*whole.area, {0.3f, 0.2f, 0}), vec3(1));
 }
 
 TEST(AreaShape, SolidAnglesOnTheAxisAreThoseOfTheTextbook) {
@@ -116,7 +116,7 @@ TEST(AreaShape, OnlyTheFrontGlows) {
         const Light one = face_light(kind, {0, 0, 0}, {0, -1, 0}, vec2(1)),
                     both = face_light(kind, {0, 0, 0}, {0, -1, 0}, vec2(1), vec3(1), true);
         EXPECT_EQ(steradians(one, {0.1f, 1, 0}), 0);
-        EXPECT_EQ(rough_arrival(one, {0.1f, 1, 0}), vec3(0));
+        EXPECT_EQ(rough_irradiance(one, {0.1f, 1, 0}), vec3(0));
         EXPECT_NEAR(steradians(both, {0.1f, 1, 0}), steradians(one, {0.1f, -1, 0}), 1e-3);
         EXPECT_GT(arrival(both, {0, 3, 0}).irradiance.x, 0);
         EXPECT_EQ(arrival(one, {0, 3, 0}).irradiance.x, 0);
@@ -138,7 +138,7 @@ TEST(AreaShape, RoughArrivalIsNeverNothingWhereLightIs) {
             const Sample2 a = sample2(i, 3), b = sample2(i, 4);
             const vec3 point = 6.0f * (vec3(a.x, a.y, b.x) - 0.5f);
             if (!(sample_area(*light.area, point, {0.3f, 0.6f}).steradians > 0)) continue;
-            EXPECT_GT(rough_arrival(light, point).x, 0);
+            EXPECT_GT(rough_irradiance(light, point).x, 0);
         }
 }
 
@@ -150,7 +150,7 @@ TEST(AreaShape, LampThatStandsForItHasItsLightFarAway) {
         EXPECT_NEAR(arrival(light, below).irradiance.x, expected, 2e-3 * expected);
         EXPECT_NEAR(radiance_of(light).x, 3, 1e-5);
         // And where the limitation says so it is 10 % off, on the axis.
-        const double distance = far_enough(*light.area, 0.1);
+        const double distance = far_distance(*light.area, 0.1);
         const vec3 there(0, -distance, 0);
         const double exact = 3 * steradians(light, there), lamp = arrival(light, there).irradiance.x;
         EXPECT_NEAR(std::abs(lamp / exact - 1), 0.1, 0.005);

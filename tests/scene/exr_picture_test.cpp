@@ -77,7 +77,7 @@ struct Plane {
     }
 };
 
-std::string lines_of(const Scratch& folder, const Image<vec3>& pixels, const Written& as) {
+std::string lines_of(const TempFolder& folder, const Image<vec3>& pixels, const Written& as) {
     const Plane plane(pixels, as);
     {
         Imf::OutputFile output(folder.file("a.exr").c_str(), header_of(pixels, as));
@@ -88,7 +88,7 @@ std::string lines_of(const Scratch& folder, const Image<vec3>& pixels, const Wri
 }
 
 // The levels after the first are black.
-std::string tiles_of(const Scratch& folder, const Image<vec3>& pixels, const Written& as, Imf::LevelMode mode) {
+std::string tiles_of(const TempFolder& folder, const Image<vec3>& pixels, const Written& as, Imf::LevelMode mode) {
     const Plane plane(pixels, as), black(Image<vec3>(pixels.size), as);
     Imf::Header header = header_of(pixels, as);
     header.setTileDescription(Imf::TileDescription(32, 16, mode));
@@ -105,7 +105,7 @@ std::string tiles_of(const Scratch& folder, const Image<vec3>& pixels, const Wri
 }
 
 // A part of depth, then the colours.
-std::string parts_of(const Scratch& folder, const Image<vec3>& pixels, const Written& as) {
+std::string parts_of(const TempFolder& folder, const Image<vec3>& pixels, const Written& as) {
     const Plane plane(pixels, as);
     Imf::Header colors = header_of(pixels, as), depth = header_of(pixels, {});
     colors.setName("rgb"), colors.setType("scanlineimage"), depth.setName("depth"), depth.setType("scanlineimage");
@@ -124,7 +124,7 @@ std::string parts_of(const Scratch& folder, const Image<vec3>& pixels, const Wri
     return read_file(folder.file("a.exr"));
 }
 
-std::string chroma_of(const Scratch& folder, const Image<vec3>& pixels, Imf::RgbaChannels channels) {
+std::string chroma_of(const TempFolder& folder, const Image<vec3>& pixels, Imf::RgbaChannels channels) {
     std::vector<Imf::Rgba> values;
     for (const vec3& pixel : pixels.pixels) values.push_back({pixel.x, pixel.y, pixel.z});
     {
@@ -139,7 +139,7 @@ std::string chroma_of(const Scratch& folder, const Image<vec3>& pixels, Imf::Rgb
 // The largest error of any value, over its pixel's brightness.
 double error_against(const Image<vec3>& expected, const std::string& bytes) {
     std::string note;
-    const Image<vec3> image = decode_picture(bytes, "sky.exr", note);
+    const Image<vec3> image = decode_image(bytes, "sky.exr", note);
     EXPECT_EQ(image.size, expected.size);
     EXPECT_EQ(note, "");
     double error = 0;
@@ -160,7 +160,7 @@ constexpr Imf::Compression all_compressions[] = {
 double allowed(Imf::Compression compression) { return compression >= Imf::B44_COMPRESSION ? .05 : 1.0 / 2048; }
 
 TEST(ExrPicture, EachCompressionOfLinesAndTiles) {
-    const Scratch folder;
+    const TempFolder folder;
     const Image<vec3> sky = sky_of({77, 301});
     for (const Imf::Compression compression : all_compressions) {
         SCOPED_TRACE(compression);
@@ -171,7 +171,7 @@ TEST(ExrPicture, EachCompressionOfLinesAndTiles) {
 }
 
 TEST(ExrPicture, EachTypeOfNumber) {
-    const Scratch folder;
+    const TempFolder folder;
     const Image<vec3> sky = sky_of({40, 70});
     EXPECT_EQ(error_against(sky, lines_of(folder, sky, {Imf::PIZ_COMPRESSION, Imf::FLOAT})), 0);
     EXPECT_EQ(error_against(sky, tiles_of(folder, sky, {Imf::PIZ_COMPRESSION, Imf::FLOAT}, Imf::MIPMAP_LEVELS)), 0);
@@ -182,7 +182,7 @@ TEST(ExrPicture, EachTypeOfNumber) {
 }
 
 TEST(ExrPicture, PartsLuminanceAndChroma) {
-    const Scratch folder;
+    const TempFolder folder;
     const Image<vec3> sky = sky_of({64, 48});
     for (const Imf::Compression compression : {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAA_COMPRESSION})
         EXPECT_LE(error_against(sky, parts_of(folder, sky, {compression})), allowed(compression));
@@ -193,18 +193,18 @@ TEST(ExrPicture, PartsLuminanceAndChroma) {
 }
 
 TEST(ExrPicture, WindowsLieAnywhere) {
-    const Scratch folder;
+    const TempFolder folder;
     const Image<vec3> sky = sky_of({20, 12});
     std::string note;
     for (const Imf::Compression compression : {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION}) {
         const Image<vec3> larger =
-            decode_picture(lines_of(folder, sky, {compression, Imf::FLOAT, {5, 3}, {30, 16}}), "sky.exr", note);
+            decode_image(lines_of(folder, sky, {compression, Imf::FLOAT, {5, 3}, {30, 16}}), "sky.exr", note);
         ASSERT_EQ(larger.size, ivec2(30, 16));
         EXPECT_EQ(larger.at(5, 3), sky.at(0, 0));
         EXPECT_EQ(larger.at(24, 14), sky.at(19, 11));
         EXPECT_EQ(larger.at(4, 3), vec3(0));
         const Written cut{compression, Imf::FLOAT, {-4, -2}, {10, 8}};
-        const Image<vec3> smaller = decode_picture(tiles_of(folder, sky, cut, Imf::MIPMAP_LEVELS), "sky.exr", note);
+        const Image<vec3> smaller = decode_image(tiles_of(folder, sky, cut, Imf::MIPMAP_LEVELS), "sky.exr", note);
         ASSERT_EQ(smaller.size, ivec2(10, 8));
         EXPECT_EQ(smaller.at(0, 0), sky.at(4, 2));
         EXPECT_EQ(smaller.at(9, 7), sky.at(13, 9));
@@ -213,11 +213,11 @@ TEST(ExrPicture, WindowsLieAnywhere) {
 
 std::string refusal(const std::string& bytes) {
     std::string note;
-    return error_text(ExitCode::refused, [&] { decode_picture(bytes, "sky.exr", note); });
+    return error_message(ExitCode::refused, [&] { decode_image(bytes, "sky.exr", note); });
 }
 
 TEST(ExrPicture, SaysWhatItIsNot) {
-    const Scratch folder;
+    const TempFolder folder;
     const Image<vec3> sky = sky_of({16, 8});
     const Plane plane(sky, {});
     const auto written = [&](const Imf::Header& header, const Imf::FrameBuffer& buffer) {
@@ -239,7 +239,7 @@ TEST(ExrPicture, SaysWhatItIsNot) {
     Imf::Header wide = header_of(sky, {});
     Imf::addChromaticities(wide, {{.7347f, .2653f}, {0, 1}, {.0001f, -.077f}, {.32168f, .33767f}});
     std::string note;
-    decode_picture(written(wide, plane.buffer), "sky.exr", note);
+    decode_image(written(wide, plane.buffer), "sky.exr", note);
     EXPECT_THAT(note, HasSubstr("not Rec.709"));
 }
 
@@ -253,7 +253,7 @@ void expect_picture_or_line(const std::string& bytes, bool repeats) {
     const auto outcome = [&] {
         std::string note;
         try {
-            const Image<vec3> image = decode_picture(bytes, "sky.exr", note);
+            const Image<vec3> image = decode_image(bytes, "sky.exr", note);
             return content_hash(std::string_view(reinterpret_cast<const char*>(image.pixels.data()),
                                                  image.pixels.size() * sizeof(vec3)));
         } catch (const Error& error) {
@@ -269,7 +269,7 @@ void expect_picture_or_line(const std::string& bytes, bool repeats) {
 }
 
 // Small files of each way to store a picture.
-std::vector<Seed> seeds(const Scratch& folder) {
+std::vector<Seed> seeds(const TempFolder& folder) {
     const Image<vec3> sky = sky_of({40, 70});
     std::vector<Seed> files;
     for (const Imf::Compression compression : all_compressions)
@@ -304,18 +304,18 @@ void cut_and_change(const std::vector<Seed>& files, uint32_t times) {
 }
 
 TEST(ExrPicture, DamagedFilesAreOneLine) {
-    const Scratch folder;
+    const TempFolder folder;
     cut_and_change(seeds(folder), 60);
 }
 
 TEST(ExrPicture, NightlyManyDamagedFilesAreOneLine) {
-    const Scratch folder;
+    const TempFolder folder;
     cut_and_change(seeds(folder), 3000);
 }
 
 // A few hundred bytes may claim no more memory than their kind of compression can mean.
 TEST(ExrPicture, SmallFilesOfLargeClaims) {
-    const Scratch folder;
+    const TempFolder folder;
     const std::string whole = lines_of(folder, sky_of({16, 8}), {Imf::PIZ_COMPRESSION});
     const size_t window = whole.find("dataWindow");
     for (const int side : {2000, 16383, 16384, 1 << 23}) {

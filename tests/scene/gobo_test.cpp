@@ -77,18 +77,19 @@ TEST(Gobo, LargePicturesAreAveragedAndSaidHugeOnesRefused) {
     std::vector<Texel> texels;
     for (int i = 0; i < 100 * 50; ++i) texels.push_back(i % 2 ? white : black);
     std::string note;
-    const ReducedPicture reduced = decode_reduced(png_of({100, 50}, texels), true, 8192, 32, "a.png", note);
+    const ReducedImage reduced = decode_reduced(png_of({100, 50}, texels), true, 8192, 32, "a.png", note);
     EXPECT_EQ(reduced.factor, 4);
     EXPECT_EQ(reduced.image.size, ivec2(25, 13));
     EXPECT_NEAR(reduced.image.at(3, 3).x, 0.5f, 1e-6f);
     EXPECT_NEAR(reduced.image.at(3, 12).x, 0.25f, 1e-6f); // half of it sticks out
     std::string huge = png_of({1, 1}, {white});
     huge.replace(16, 8, std::string("\0\0\x40\0\0\0\x40\0", 8)); // 16384²
-    EXPECT_NE(error_text(ExitCode::refused, [&] { make_gobo(huge, ColorSpace::srgb, "huge.png", note); }).find("8192"),
-              std::string::npos);
     EXPECT_NE(
-        error_text(ExitCode::refused, [&] { make_gobo("no picture", ColorSpace::srgb, "x.png", note); }).find("x.png"),
+        error_message(ExitCode::refused, [&] { make_gobo(huge, ColorSpace::srgb, "huge.png", note); }).find("8192"),
         std::string::npos);
+    EXPECT_NE(error_message(ExitCode::refused, [&] { make_gobo("no picture", ColorSpace::srgb, "x.png", note); })
+                  .find("x.png"),
+              std::string::npos);
 }
 }
 }

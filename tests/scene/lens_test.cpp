@@ -89,14 +89,14 @@ TEST(Lens, BlurIsTheCircleOfConfusion) {
     }
 }
 
-Camera camera_of(const Scratch& folder, const std::string& fields, double seconds = 0) {
-    const LoadAnswer answer = load(folder.put("scene.json", R"({"tyndall": 1, )" + fields + "}"));
+Camera camera_of(const TempFolder& folder, const std::string& fields, double seconds = 0) {
+    const LoadResult answer = load(folder.put("scene.json", R"({"tyndall": 1, )" + fields + "}"));
     EXPECT_TRUE(answer.loaded) << answer.message;
     return camera_at(answer.scene, answer.scene.camera, seconds);
 }
 
 TEST(Lens, OfASceneFile) {
-    const Scratch folder;
+    const TempFolder folder;
     const std::string placed = R"("camera": {"position": [0, 0, 5], "target": [0, 0, 1])";
     EXPECT_FALSE(camera_of(folder, placed + "}").lens);
     const Lens plain = camera_of(folder, placed + R"(, "aperture_radius": 0.02})").lens;
@@ -109,11 +109,11 @@ TEST(Lens, OfASceneFile) {
     EXPECT_FLOAT_EQ(middle.radius, 0.03f);
     EXPECT_FLOAT_EQ(middle.focus, 2);
     EXPECT_EQ(middle.blades, 6);
-    EXPECT_FLOAT_EQ(middle.turn, pi / 6);
+    EXPECT_FLOAT_EQ(middle.rotation, pi / 6);
 }
 
 TEST(Lens, OnACameraOfTheGltf) {
-    const Scratch folder;
+    const TempFolder folder;
     GltfBuilder gltf = triangle_gltf();
     gltf.members["cameras"] = R"([{"type":"perspective","perspective":{"yfov":0.5,"znear":0.2}}])";
     gltf.members["nodes"] = R"([{"mesh":0},{"name":"Shot","camera":0},{"name":"Wide","camera":0}])";
@@ -128,7 +128,7 @@ TEST(Lens, OnACameraOfTheGltf) {
         EXPECT_EQ(camera.lens.focus, 7);
     }
     EXPECT_FALSE(camera_of(folder, R"("gltf": "room.gltf", "cameras": [)" + lens + "]").lens) << "Shot is the default";
-    const LoadAnswer answer = load(folder.put(
+    const LoadResult answer = load(folder.put(
         "scene.json", R"({"tyndall": 1, "gltf": "room.gltf", "camera": {"name": "Shot", "aperture_radius": 1}})"));
     EXPECT_FALSE(answer.loaded);
     EXPECT_NE(answer.message.find("focus_distance"), std::string::npos) << answer.message;

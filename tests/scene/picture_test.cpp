@@ -19,18 +19,19 @@ namespace {
 using ::testing::HasSubstr;
 
 TEST(ImageFile, RadianceKeepsItsRange) {
-    const Scratch folder;
+    const TempFolder folder;
     // RGBE: mantissa / 256 · 2^(exponent - 128).
     const auto file = folder.put("sky.hdr", radiance_of({2, 1}, {{128, 64, 0, 132}, {0, 0, 0, 0}}));
     std::string note;
-    const Image<vec3> image = decode_picture(read_file(file), "test", note);
+    const Image<vec3> image = decode_image(read_file(file), "test", note);
     ASSERT_EQ(image.size, ivec2(2, 1));
     EXPECT_EQ(image.at(0, 0), vec3(8, 4, 0));
     EXPECT_EQ(image.at(1, 0), vec3(0));
 }
 
 // Bytes of an EXR with these pixels in a window of a larger picture.
-std::string openexr_of(const Scratch& folder, ivec2 display, ivec2 low, const Image<vec3>& pixels, bool grey = false) {
+std::string openexr_of(const TempFolder& folder, ivec2 display, ivec2 low, const Image<vec3>& pixels,
+                       bool grey = false) {
     const auto file = folder.path() / "picture.exr";
     const ivec2 high = low + pixels.size - 1;
     Imf::Header header(Imath::Box2i({0, 0}, {display.x - 1, display.y - 1}),
@@ -54,13 +55,13 @@ std::string openexr_of(const Scratch& folder, ivec2 display, ivec2 low, const Im
 }
 
 TEST(ImageFile, OpenExrFillsItsDisplayWindow) {
-    const Scratch folder;
+    const TempFolder folder;
     Image<vec3> pixels({2, 1});
     pixels.pixels = {{70000, 0.5f, 0.25f}, {1, -2, 3}};
     const std::string bytes = openexr_of(folder, {4, 2}, {1, 1}, pixels);
     EXPECT_EQ(image_format(bytes), ImageFormat::openexr);
     std::string note;
-    const Image<vec3> image = decode_picture(bytes, "test", note);
+    const Image<vec3> image = decode_image(bytes, "test", note);
     ASSERT_EQ(image.size, ivec2(4, 2));
     EXPECT_EQ(image.at(1, 1), vec3(70000, 0.5f, 0.25f));
     EXPECT_EQ(image.at(2, 1), vec3(1, 0, 3));
@@ -68,18 +69,18 @@ TEST(ImageFile, OpenExrFillsItsDisplayWindow) {
     EXPECT_EQ(image.at(3, 1), vec3(0));
     EXPECT_THAT(note, HasSubstr("1 pixels with negative values"));
 
-    const Image<vec3> grey = decode_picture(openexr_of(folder, {2, 1}, {0, 0}, pixels, true), "test", note);
+    const Image<vec3> grey = decode_image(openexr_of(folder, {2, 1}, {0, 0}, pixels, true), "test", note);
     EXPECT_EQ(grey.at(0, 0), vec3(70000));
-    const ReducedPicture half = decode_reduced(openexr_of(folder, {2, 1}, {0, 0}, pixels), false, 100, 1, "test", note);
+    const ReducedImage half = decode_reduced(openexr_of(folder, {2, 1}, {0, 0}, pixels), false, 100, 1, "test", note);
     EXPECT_EQ(half.factor, 2);
     EXPECT_EQ(half.image.at(0, 0), vec3(70001, -1.5f, 3.25f) / 4.0f);
 }
 
 TEST(ImageFile, OpenExrThatIsNoPicture) {
-    const Scratch folder;
+    const TempFolder folder;
     std::string note;
     const auto refusal = [&](const std::string& bytes) {
-        return std::string(error_of([&] { decode_picture(bytes, "sky.exr", note); }).what());
+        return std::string(error_of([&] { decode_image(bytes, "sky.exr", note); }).what());
     };
     Image<vec3> pixels({2, 1}, vec3(1));
     const std::string whole = openexr_of(folder, {2, 1}, {0, 0}, pixels);

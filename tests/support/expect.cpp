@@ -10,7 +10,7 @@ Error error_of(const std::function<void()>& action) {
     return Error(ExitCode::ok, "", "");
 }
 
-std::string error_text(ExitCode code, const std::function<void()>& action) {
+std::string error_message(ExitCode code, const std::function<void()>& action) {
     const Error error = error_of(action);
     const std::string text = error.what();
     EXPECT_NE(static_cast<int>(error.code), static_cast<int>(ExitCode::ok)) << "nothing was refused";

@@ -14,7 +14,7 @@ namespace tyndall {
 Error error_of(const std::function<void()>& action);
 
 // Its message, which must be one short line and the Error carry `code`; empty (and a failure) when there is none.
-std::string error_text(ExitCode code, const std::function<void()>& action);
+std::string error_message(ExitCode code, const std::function<void()>& action);
 
 // The text with the first `what` replaced, which must be in it.
 std::string replaced(std::string text, std::string_view what, std::string_view by);

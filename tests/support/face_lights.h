@@ -16,18 +16,18 @@ inline Light face_light(LightKind kind, vec3 center, vec3 normal, vec2 size, vec
     Light light;
     light.name = "face";
     light.position = center, light.direction = shape.normal, light.intensity = nits * face_area(shape);
-    stand_for(shape, light);
+    make_punctual(shape, light);
     return light;
 }
 inline Light rectangle_light(vec3 center, vec3 normal, vec2 size, vec3 nits = vec3(1)) {
     return face_light(LightKind::rectangle, center, normal, size, nits);
 }
 // The same with a picture on it.
-inline Light picture_light(const Light& light, std::shared_ptr<const Gobo> picture) {
+inline Light picture_light(const Light& light, std::shared_ptr<const Gobo> texture) {
     AreaShape shape = *light.area;
-    shape.picture = std::move(picture);
+    shape.texture = std::move(texture);
     Light result = light;
-    stand_for(shape, result);
+    make_punctual(shape, result);
     return result;
 }
 inline Light disc_light(vec3 center, vec3 normal, float radius, vec3 nits = vec3(1)) {

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 namespace tyndall {
-inline bool says(const Limitations& limitations, const LimitationKind& kind) {
+inline bool has_limitation(const Limitations& limitations, const LimitationKind& kind) {
     return std::ranges::any_of(limitations, [&](const Limitation& one) { return one.is(kind); });
 }
 
-inline bool says(const Limitations& limitations, Subject subject, std::string_view name) {
+inline bool has_limitation(const Limitations& limitations, Subject subject, std::string_view name) {
     return std::ranges::any_of(limitations,
                                [&](const Limitation& one) { return one.subject == subject && one.name == name; });
 }

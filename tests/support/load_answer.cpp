@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 namespace tyndall {
-LoadAnswer load(const std::filesystem::path& file, const LoadOptions& options) {
-    LoadAnswer answer;
+LoadResult load(const std::filesystem::path& file, const LoadOptions& options) {
+    LoadResult answer;
     try {
         answer.scene = load_scene(file, options);
         answer.loaded = true;
@@ -21,7 +21,7 @@ void expect_one_line(const std::string& message) {
     for (const unsigned char c : message) EXPECT_TRUE(c >= 0x20 && c != 0x7f) << message;
 }
 
-void expect_refusal(const LoadAnswer& answer, std::string_view part, ExitCode code) {
+void expect_refusal(const LoadResult& answer, std::string_view part, ExitCode code) {
     EXPECT_FALSE(answer.loaded) << "loaded, but should name " << part;
     EXPECT_EQ(static_cast<int>(answer.code), static_cast<int>(code)) << answer.message;
     EXPECT_NE(answer.message.find(part), std::string::npos) << answer.message;

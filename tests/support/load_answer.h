@@ -10,19 +10,19 @@
 
 namespace tyndall {
 // What loading a file answers: the scene, or one line of refusal.
-struct LoadAnswer {
+struct LoadResult {
     Scene scene;
     bool loaded = false;
     ExitCode code = ExitCode::ok;
     std::string message;
 };
 
-LoadAnswer load(const std::filesystem::path& file, const LoadOptions& options = {});
+LoadResult load(const std::filesystem::path& file, const LoadOptions& options = {});
 
 // A refusal is one short printable line.
 void expect_one_line(const std::string& message);
 
-void expect_refusal(const LoadAnswer& answer, std::string_view part, ExitCode code = ExitCode::refused);
+void expect_refusal(const LoadResult& answer, std::string_view part, ExitCode code = ExitCode::refused);
 
 bool has_warning(const Scene& scene, std::string_view part);
 }

@@ -29,7 +29,7 @@ View view_of(vec3 eye, vec3 target, ivec2 size, float vertical_fov) {
     return view;
 }
 
-std::vector<Ray> picture_rays(const View& view, const Snapshot& snapshot, float far) {
+std::vector<Ray> pixel_rays(const View& view, const Snapshot& snapshot, float far) {
     std::vector<Ray> rays;
     for (int y = 0; y < view.size.y; ++y)
         for (int x = 0; x < view.size.x; ++x) {

@@ -7,32 +7,32 @@
 #include <fstream>
 
 namespace tyndall {
-Scratch::Scratch() {
+TempFolder::TempFolder() {
     std::string name = (std::filesystem::temp_directory_path() / "tyndall_test_XXXXXX").string();
     EXPECT_NE(mkdtemp(name.data()), nullptr);
     path_ = name;
 }
 
-Scratch::~Scratch() {
+TempFolder::~TempFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
 }
 
-std::filesystem::path Scratch::put(std::string_view name, std::string_view bytes) const {
+std::filesystem::path TempFolder::put(std::string_view name, std::string_view bytes) const {
     const std::filesystem::path path = path_ / name;
     std::filesystem::create_directories(path.parent_path());
     std::ofstream(path, std::ios::binary) << bytes;
     return path;
 }
 
-std::vector<std::string> Scratch::names() const {
+std::vector<std::string> TempFolder::names() const {
     std::vector<std::string> result;
     for (const auto& entry : std::filesystem::directory_iterator(path_)) result.push_back(entry.path().filename());
     std::ranges::sort(result);
     return result;
 }
 
-std::map<std::string, std::string> Scratch::contents() const {
+std::map<std::string, std::string> TempFolder::contents() const {
     std::map<std::string, std::string> result;
     for (const std::string& name : names())
         if (std::filesystem::is_regular_file(path_ / name)) result[name] = bytes_of(path_ / name);

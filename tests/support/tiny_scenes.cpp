@@ -3,8 +3,8 @@
 #include "scene/scene.h"
 
 namespace tyndall::test {
-Stage stage_of(std::vector<Medium> media, std::vector<Light> lights, std::vector<Mesh> meshes, vec3 ambient) {
-    Stage stage;
+TestScene make_scene(std::vector<Medium> media, std::vector<Light> lights, std::vector<Mesh> meshes, vec3 ambient) {
+    TestScene stage;
     stage.scene = std::make_shared<Scene>();
     stage.scene->materials = {blend_material(0.5f)};
     for (Mesh& mesh : meshes) add_mesh(*stage.scene, std::move(mesh));
@@ -13,5 +13,5 @@ Stage stage_of(std::vector<Medium> media, std::vector<Light> lights, std::vector
     return stage;
 }
 
-Mesh shade(float edge, float y) { return quad({edge - 50, y, -50}, {50, 0, 0}, {0, 0, 100}); }
+Mesh roof(float edge, float y) { return quad({edge - 50, y, -50}, {50, 0, 0}, {0, 0, 100}); }
 }

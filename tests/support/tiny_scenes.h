@@ -7,12 +7,13 @@
 
 namespace tyndall::test {
 // A snapshot with triangles; keeps their scene.
-struct Stage {
+struct TestScene {
     std::shared_ptr<Scene> scene;
     Snapshot snapshot;
 };
-Stage stage_of(std::vector<Medium> media, std::vector<Light> lights, std::vector<Mesh> meshes, vec3 ambient = vec3(0));
+TestScene make_scene(std::vector<Medium> media, std::vector<Light> lights, std::vector<Mesh> meshes,
+                     vec3 ambient = vec3(0));
 
 // Opaque over x < edge at height y, far out to the other sides.
-Mesh shade(float edge, float y);
+Mesh roof(float edge, float y);
 }

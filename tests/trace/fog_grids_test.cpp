@@ -19,7 +19,7 @@ using namespace test;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 
-FileSequence file_of(const Scratch& scratch, const std::string& name, SparseVolume volume) {
+FileSequence file_of(const TempFolder& scratch, const std::string& name, SparseVolume volume) {
     FileSequence sequence;
     sequence.pattern = scratch.file(name + ".vdb");
     volume.name = name;
@@ -27,7 +27,7 @@ FileSequence file_of(const Scratch& scratch, const std::string& name, SparseVolu
     return sequence;
 }
 
-MediumSource fire_source(const Scratch& scratch, float kelvin = 1500) {
+MediumSource fire_source(const TempFolder& scratch, float kelvin = 1500) {
     MediumSource source;
     source.name = "fire", source.kind = MediumKind::vdb;
     source.sequence = file_of(scratch, "density", constant_box(16, 0.5f));
@@ -38,7 +38,7 @@ MediumSource fire_source(const Scratch& scratch, float kelvin = 1500) {
 }
 
 TEST(FogGrids, AreSharedUntilSomethingChanges) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     scene.media = {fire_source(scratch)};
     scene.media[0].blackbody->scale.times = {0, 1}, scene.media[0].blackbody->scale.values = {1, 3};
@@ -57,7 +57,7 @@ TEST(FogGrids, AreSharedUntilSomethingChanges) {
 }
 
 TEST(FogGrids, MoveWithTheirMedium) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     scene.media = {fire_source(scratch)};
     scene.media[0].blackbody->by_absorption = true;
@@ -77,7 +77,7 @@ TEST(FogGrids, MoveWithTheirMedium) {
 }
 
 TEST(FogGrids, LightNeedsNoDensity) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     scene.media = {fire_source(scratch)};
     scene.media[0].extinction = 0.0f;
@@ -94,7 +94,7 @@ TEST(FogGrids, LightNeedsNoDensity) {
 }
 
 TEST(FogGrids, TemperaturesOutOfRangeAreMendedAndSaid) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     SparseVolume volume = constant_box(16, 1000);
     volume.leaves[0].values[9] = 1e9f, volume.leaves[0].values[10] = -5;
@@ -106,14 +106,14 @@ TEST(FogGrids, TemperaturesOutOfRangeAreMendedAndSaid) {
 }
 
 TEST(FogGrids, AMissingGridIsOneLine) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     scene.media = {fire_source(scratch)};
     scene.media[0].temperature->grids = {"heat"};
-    EXPECT_THAT(error_text(ExitCode::refused,
-                           [&] {
-                               make_snapshot(scene, Moment{1, 0});
-                           }),
+    EXPECT_THAT(error_message(ExitCode::refused,
+                              [&] {
+                                  make_snapshot(scene, Moment{1, 0});
+                              }),
                 HasSubstr("has no grid \"heat\"; it has temperature (float)"));
 }
 
@@ -150,7 +150,7 @@ TEST(FogGrids, ARecipesFireGlowsAsItsFormulaSays) {
 
 // A few bytes of file can stand for billions of voxels.
 TEST(FogGrids, HugeTilesStayTiles) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene;
     SparseVolume volume;
     volume.tiles = {{ivec3(0), ivec3(799), 1500}};

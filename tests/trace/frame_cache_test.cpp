@@ -26,7 +26,7 @@ using namespace test;
 
 Snapshot next_of(const Snapshot& before) {
     Snapshot next;
-    next.cache = std::make_shared<FrameCache>(), next.cache_before = before.cache;
+    next.cache = std::make_shared<FrameCache>(), next.previous_cache = before.cache;
     return next;
 }
 
@@ -155,7 +155,7 @@ TEST(FrameCache, MemoryDoesNotGrowWithFrames) {
     for (int i = 0; i < 50; ++i) {
         frame = next_of(frame);
         made.push_back(std::weak_ptr(cached(frame, "thing", number(i), [] { return std::vector<float>(1000); })));
-        EXPECT_LE(frame.cache->things.size(), 1u);
+        EXPECT_LE(frame.cache->entries.size(), 1u);
         for (int k = 0; k + 1 < i; ++k) EXPECT_TRUE(made[static_cast<size_t>(k)].expired()) << k << " in frame " << i;
     }
     EXPECT_FALSE(made.back().expired());

@@ -42,7 +42,7 @@ Scene prepared_scene() {
     return scene;
 }
 
-std::shared_ptr<CacheFolder> folder_in(const Scratch& scratch) {
+std::shared_ptr<CacheFolder> folder_in(const TempFolder& scratch) {
     auto folder = std::make_shared<CacheFolder>(scratch.path());
     folder->writes = true, folder->room = uint64_t{1} << 30;
     return folder;
@@ -97,7 +97,7 @@ void expect_same(const Things& a, const Things& b) {
 }
 
 TEST(PreparedSnapshot, FilesHoldTheBitsThatAreMadeWithout) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const Scene scene = prepared_scene();
     const Things plain = things_of(scene, nullptr);
     ASSERT_TRUE(plain.fluence && plain.grid.depth && plain.froxels.depth && !plain.map->empty());
@@ -119,7 +119,7 @@ TEST(PreparedSnapshot, FilesHoldTheBitsThatAreMadeWithout) {
 
 // Which of the things are made anew for a scene and plan that differ a little.
 std::vector<std::string> made_anew(const std::function<void(Scene&, CacheFolder&)>& change) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const Scene scene = prepared_scene();
     const auto first = folder_in(scratch), second = folder_in(scratch);
     things_of(scene, first);
@@ -148,7 +148,7 @@ TEST(PreparedSnapshot, WhatDependsOnAChangeIsMadeAnew) {
 }
 
 TEST(PreparedSnapshot, FogThatIsEmptyAndNotesOfFilesAreKept) {
-    const Scratch scratch;
+    const TempFolder scratch;
     Scene scene = prepared_scene();
     scene.media[0].recipe->threshold = 1;
     const auto first = folder_in(scratch), second = folder_in(scratch);

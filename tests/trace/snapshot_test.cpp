@@ -110,7 +110,7 @@ TEST(Snapshot, AnalyticMediaMoveWithTheirTransform) {
 
 TEST(Snapshot, MovedBoxesCoverTheirCorners) {
     const mat4 matrix = glm::rotate(glm::translate(mat4(1), vec3(1, 2, 3)), 0.5f, glm::normalize(vec3(1, 1, 0)));
-    const Box box = moved_box(matrix, {vec3(-1, -2, -3), vec3(3, 2, 1)});
+    const Box box = transform_box(matrix, {vec3(-1, -2, -3), vec3(3, 2, 1)});
     const Box expected = transform(matrix, {vec3(-1, -2, -3), vec3(3, 2, 1)});
     EXPECT_NEAR(glm::distance(box.low, expected.low), 0, 1e-5);
     EXPECT_NEAR(glm::distance(box.high, expected.high), 0, 1e-5);
@@ -160,7 +160,7 @@ TEST(Snapshot, ReuseGivesTheSameBits) {
 }
 
 TEST(Snapshot, FilesAreReadOnceAndAgainWhenTheyChange) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto file = scratch / "fog.vdb";
     SparseVolume volume = constant_box(16, 0.5f);
     volume.index_to_world = glm::translate(dmat4(1), dvec3(4, 0, 0));
@@ -183,7 +183,7 @@ TEST(Snapshot, FilesAreReadOnceAndAgainWhenTheyChange) {
 
 // A column along z, thinner upwards and lit towards +y, must stand on the ground and be lit towards -z.
 TEST(Snapshot, VolumesWithZUpStandUpright) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto file = scratch / "column.vdb";
     SparseVolume volume = constant_box(16, 1);
     for (Leaf& leaf : volume.leaves)
@@ -207,7 +207,7 @@ TEST(Snapshot, VolumesWithZUpStandUpright) {
 }
 
 TEST(Snapshot, ClippedSequencesHaveNoFog) {
-    const Scratch scratch;
+    const TempFolder scratch;
     write_vdb(scratch / "fog.0002.vdb", constant_box(16, 0.5f));
     Scene scene;
     scene.media = {file_source(scratch / "fog.####.vdb")};
@@ -275,7 +275,7 @@ TEST(Snapshot, CamerasAreFoundByName) {
 }
 
 TEST(Background, ColourSkyAndPlate) {
-    BackgroundNow background;
+    BackgroundState background;
     background.color = vec3(1, 2, 3);
     background.intensity = 2;
     EXPECT_EQ(background_radiance(background, vec3(0, 1, 0), vec2(0)), vec3(2, 4, 6));
@@ -302,7 +302,7 @@ TEST(Background, LatLongWrapsWithoutASeam) {
     auto image = std::make_shared<Image<vec3>>(ivec2(64, 32));
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 64; ++x) image->at(x, y) = vec3(std::abs(x - 31.5f), y, x);
-    BackgroundNow background;
+    BackgroundState background;
     background.kind = BackgroundKind::image;
     background.image = image;
     background.lat_long = true;

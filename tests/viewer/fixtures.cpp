@@ -44,8 +44,8 @@ std::shared_ptr<Scene> small_scene(const std::filesystem::path& file) {
 LoadedScene loaded(const Scene& scene) {
     auto session = std::make_shared<SceneSession>();
     session->scene = scene, session->before = editable_parts(scene);
-    auto stage = std::make_shared<Scene>(scene);
-    return {scene.file, std::move(session), std::move(stage), {}, ExitCode::ok};
+    auto render_copy = std::make_shared<Scene>(scene);
+    return {scene.file, std::move(session), std::move(render_copy), {}, ExitCode::ok};
 }
 
 void take_scene(ViewState& state, const std::shared_ptr<Scene>& scene) { take_scene(state, loaded(*scene)); }

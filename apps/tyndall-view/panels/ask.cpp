@@ -11,7 +11,7 @@ namespace {
 constexpr const char* title = "Before closing";
 
 // A scene without a scene file needs a file name first.
-void save_and_go(const ViewState& state, const EditMemory& memory, const Act& act) {
+void save_and_go(const ViewState& state, const EditState& memory, const Act& act) {
     if (!state.session->has_file) {
         act({Verb::save_as, {memory.file_name}, {}, {}});
         if (state.message_is_error) return;
@@ -19,7 +19,7 @@ void save_and_go(const ViewState& state, const EditMemory& memory, const Act& ac
     act({Verb::answer, {"save"}, {}, {}});
 }
 
-void draw_buttons(const ViewState& state, bool unsaved, bool ends_job, const EditMemory& memory, const Act& act) {
+void draw_buttons(const ViewState& state, bool unsaved, bool ends_job, const EditState& memory, const Act& act) {
     const float width = 6.5f * ImGui::GetFontSize();
     if (unsaved) {
         ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_Header));
@@ -36,7 +36,7 @@ void draw_buttons(const ViewState& state, bool unsaved, bool ends_job, const Edi
 }
 
 // Says what would be lost.
-void draw_losses(const ViewState& state, bool unsaved, bool ends_job, EditMemory& memory) {
+void draw_losses(const ViewState& state, bool unsaved, bool ends_job, EditState& memory) {
     const std::string name = printable(state.scene->file.filename().string(), 60);
     if (unsaved) ImGui::Text("%s has edits that are not saved.", name.c_str());
     if (unsaved && !state.session->has_file) {
@@ -52,7 +52,7 @@ void draw_losses(const ViewState& state, bool unsaved, bool ends_job, EditMemory
 }
 }
 
-void draw_question(const ViewState& state, const PanelResources& resources, EditMemory& memory, const Act& act) {
+void draw_question(const ViewState& state, const PanelResources& resources, EditState& memory, const Act& act) {
     if (state.asked && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
     if (!ImGui::BeginPopupModal(title, nullptr,

@@ -38,7 +38,7 @@ bool job_button(const char* text, const ViewState& state, const std::string& hel
     return pressed;
 }
 
-void draw_open(const ViewState& state, FilesMemory& memory, const Act& act) {
+void draw_open(const ViewState& state, FilesState& memory, const Act& act) {
     if (!memory.other.edited) memory.other.name = state.scene_file.string();
     const ImGuiStyle& style = ImGui::GetStyle();
     ImGui::SetNextItemWidth(-ImGui::CalcTextSize("Open").x - 2 * style.FramePadding.x - style.ItemSpacing.x);
@@ -52,8 +52,8 @@ void draw_open(const ViewState& state, FilesMemory& memory, const Act& act) {
     act({Verb::open, {memory.other.name}, {}, {}});
 }
 
-void draw_picture_file(const ViewState& state, FilesMemory& memory, const Act& act) {
-    draw_name("##picture", usual_file_name(state), memory.picture);
+void draw_picture_file(const ViewState& state, FilesState& memory, const Act& act) {
+    draw_name("##picture", default_file_name(state), memory.picture);
     if (ImGui::Button("Write image")) {
         act({Verb::snapshot, {memory.picture.name}, {}, {}});
         memory.picture.edited = false;
@@ -62,18 +62,18 @@ void draw_picture_file(const ViewState& state, FilesMemory& memory, const Act& a
             " samples per pixel, as tyndall render writes it: .exr for linear light, .png for viewing");
 }
 
-std::vector<std::string> sequence_words(const FilesMemory& memory) {
+std::vector<std::string> sequence_words(const FilesState& memory) {
     return {memory.sequence.name, memory.frames, memory.pngs ? "png" : "exr"};
 }
 
-void draw_command(const FilesMemory& memory, const Act& act) {
+void draw_command(const FilesState& memory, const Act& act) {
     const bool pressed = ImGui::Button("Copy command");
     tooltip("The command line that renders the same frames, for a shell or a farm");
     if (pressed) act({Verb::copy_command, sequence_words(memory), {}, {}});
 }
 
-void draw_sequence(const ViewState& state, FilesMemory& memory, const Act& act) {
-    draw_name("##sequence", usual_sequence_name(state), memory.sequence);
+void draw_sequence(const ViewState& state, FilesState& memory, const Act& act) {
+    draw_name("##sequence", default_sequence_name(state), memory.sequence);
     draw_range("##frames", *state.scene, memory.frames);
     ImGui::SameLine();
     ImGui::Checkbox("PNGs too", &memory.pngs);
@@ -86,7 +86,7 @@ void draw_sequence(const ViewState& state, FilesMemory& memory, const Act& act) 
     draw_command(memory, act);
 }
 
-void draw_bake(const ViewState& state, FilesMemory& memory, const Act& act) {
+void draw_bake(const ViewState& state, FilesState& memory, const Act& act) {
     const std::vector<std::string> media = bakeable_media(*state.scene);
     if (media.empty()) return;
     ImGui::Separator();
@@ -100,7 +100,7 @@ void draw_bake(const ViewState& state, FilesMemory& memory, const Act& act) {
             ImGui::EndCombo();
         }
     }
-    draw_name("##fog", usual_bake_name(memory.medium), memory.fog);
+    draw_name("##fog", default_bake_name(memory.medium), memory.fog);
     draw_range("##fog frames", *state.scene, memory.fog_frames);
     ImGui::SameLine();
     if (job_button("Bake fog", state,
@@ -109,7 +109,7 @@ void draw_bake(const ViewState& state, FilesMemory& memory, const Act& act) {
 }
 }
 
-void draw_files(const ViewState& state, FilesMemory& memory, const Act& act) {
+void draw_files(const ViewState& state, FilesState& memory, const Act& act) {
     if (!state.scene || !ImGui::CollapsingHeader("files", ImGuiTreeNodeFlags_DefaultOpen)) return;
     if (memory.scene != state.scene->file) memory = {state.scene->file, {}, {}, {}, {}, {}, {}, {}, memory.pngs};
     draw_open(state, memory, act);

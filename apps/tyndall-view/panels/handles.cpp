@@ -55,8 +55,8 @@ void cone(ImVec2 tip, vec2 along, float length, ImU32 color) {
 // The direction a light shines in the image; down when it shines along the view.
 vec2 drawn_direction(const ViewState& state, ivec2 size, const LightIcon& icon) {
     const Camera camera = camera_now(state);
-    const vec3 direction = light_place(*state.scene, icon.light, seconds_of(state)).direction;
-    const auto tip = pixel_of(camera, size, icon.place + 20 * pixel_span(camera, size, icon.place) * direction);
+    const vec3 direction = light_placement(*state.scene, icon.light, seconds_of(state)).direction;
+    const auto tip = pixel_of(camera, size, icon.place + 20 * pixel_size(camera, size, icon.place) * direction);
     const vec2 way = tip ? *tip - icon.pixel : vec2(0);
     return glm::length(way) > 2 ? glm::normalize(way) : vec2(0, 1);
 }
@@ -112,9 +112,9 @@ void draw_beam(const ViewState& state, ivec2 size, const LightIcon& icon, const 
     if (!has_cone(light)) return;
     const Camera camera = camera_now(state);
     const double seconds = seconds_of(state);
-    const LightPlace place = light_place(*state.scene, icon.light, seconds);
+    const LightPlacement place = light_placement(*state.scene, icon.light, seconds);
     const float metres = light.target ? glm::distance(light.target->at(seconds), place.position)
-                                      : 2 * length * pixel_span(camera, size, icon.place);
+                                      : 2 * length * pixel_size(camera, size, icon.place);
     const std::vector<vec2> ends = beam_ring(camera, size, *state.scene, icon.light, seconds, metres);
     const ImU32 color = IM_COL32(255, 255, 255, 90);
     for (size_t i = 0; i < ends.size(); ++i) {
@@ -138,7 +138,7 @@ Grip grip_at(const std::vector<LightIcon>& icons, const LightIcon* selected, std
 }
 
 // A press selects the light and begins a drag.
-void take_hold(const ViewState& state, ivec2 size, const Grip& grip, vec2 pixel, float length, EditMemory& memory,
+void take_hold(const ViewState& state, ivec2 size, const Grip& grip, vec2 pixel, float length, EditState& memory,
                const Act& act) {
     memory.has_mouse = true, memory.moved = false;
     if (state.playing) act({Verb::stop, {}, {}, {}});
@@ -146,7 +146,7 @@ void take_hold(const ViewState& state, ivec2 size, const Grip& grip, vec2 pixel,
     memory.drag = begin_drag(state, size, *grip.icon, grip.handle.value_or(Handle::view), pixel, length, memory.drags);
 }
 
-void go_on(vec2 pixel, float scale, EditMemory& memory, const Act& act) {
+void drag_on(vec2 pixel, float scale, EditState& memory, const Act& act) {
     if (!memory.drag) return;
     if (ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false)) {
         if (memory.moved) act({Verb::cancel, {}, {static_cast<double>(memory.drag->number)}, {}});
@@ -159,13 +159,13 @@ void go_on(vec2 pixel, float scale, EditMemory& memory, const Act& act) {
 }
 
 std::string place_text(const ViewState& state, const LightIcon& icon, Handle handle) {
-    const LightPlace place = light_place(*state.scene, icon.light, seconds_of(state));
+    const LightPlacement place = light_placement(*state.scene, icon.light, seconds_of(state));
     const vec3 v = handle == Handle::direction ? place.direction : place.position;
     return formatted(handle == Handle::direction ? "%.2f  %.2f  %.2f" : "%.2f  %.2f  %.2f m", v.x, v.y, v.z);
 }
 }
 
-bool draw_handles(const ViewState& state, ivec2 size, const PicturePlace& place, EditMemory& memory, const Act& act) {
+bool draw_handles(const ViewState& state, ivec2 size, const ImageRect& place, EditState& memory, const Act& act) {
     const ImGuiIO& io = ImGui::GetIO();
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) memory.has_mouse = false, memory.drag.reset();
     if (!state.scene || !state.lights_tab || !state.handles) return memory.has_mouse;
@@ -178,7 +178,7 @@ bool draw_handles(const ViewState& state, ivec2 size, const PicturePlace& place,
     const std::vector<LightIcon> icons = icons_in_view(state, size, 3 * type / zoom.scale);
     const LightIcon* selected = nullptr;
     for (const LightIcon& icon : icons)
-        if (state.selected == Thing{Part::light, icon.light}) selected = &icon;
+        if (state.selected == PartRef{Part::light, icon.light}) selected = &icon;
     std::vector<HandlePoint> handles;
     if (selected) handles = light_handles(camera, size, *selected, *state.scene, seconds_of(state), length);
 
@@ -186,7 +186,7 @@ bool draw_handles(const ViewState& state, ivec2 size, const PicturePlace& place,
     const bool looks = ImGui::IsItemHovered() && !memory.has_mouse && (pressed || !ImGui::IsItemActive());
     const Grip grip = looks ? grip_at(icons, selected, handles, pixel, reach) : Grip{};
     if (grip.icon && pressed) take_hold(state, size, grip, pixel, length, memory, act);
-    if (memory.has_mouse) go_on(pixel, zoom.scale, memory, act);
+    if (memory.has_mouse) drag_on(pixel, zoom.scale, memory, act);
     if (grip.icon || memory.drag) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
 
     ImGui::PushClipRect(place.low, place.high, true);

@@ -5,12 +5,12 @@
 
 namespace tyndall {
 // Rectangle of the whole image in the window, pixels; low is the upper left.
-struct PicturePlace {
+struct ImageRect {
     ImVec2 low, high;
     float height() const { return high.y - low.y; }
 };
 
 // Call after the item that takes the mouse on the image. Returns true while a light has the mouse, so that the camera
 // stays.
-bool draw_handles(const ViewState& state, ivec2 size, const PicturePlace& place, EditMemory& memory, const Act& act);
+bool draw_handles(const ViewState& state, ivec2 size, const ImageRect& place, EditState& memory, const Act& act);
 }

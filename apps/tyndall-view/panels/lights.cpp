@@ -65,7 +65,7 @@ std::string proposed_name(const SceneSession& session) {
     return file.string();
 }
 
-void draw_save_as(const ViewState& state, EditMemory& memory, const Act& act) {
+void draw_save_as(const ViewState& state, EditState& memory, const Act& act) {
     propose_name(state, memory);
     const float width = ImGui::CalcTextSize("Save as").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-width - ImGui::GetStyle().ItemSpacing.x);
@@ -84,7 +84,7 @@ void draw_save_as(const ViewState& state, EditMemory& memory, const Act& act) {
 ImVec4 hue_of(vec3 color) { return shown_color(color / std::max(max_component(color), 1e-6f)); }
 
 // A line of the list: a color dot, the name and the kind.
-void draw_line(const ViewState& state, Thing thing, const std::string& name, const char* kind, ImVec4 color,
+void draw_line(const ViewState& state, PartRef thing, const std::string& name, const char* kind, ImVec4 color,
                const Act& act) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float type = ImGui::GetFontSize(), radius = 0.32f * type;
@@ -133,9 +133,9 @@ void draw_list(const ViewState& state, const Act& act) {
                   ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled), act);
 }
 
-void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {
+void draw_selected(const ViewState& state, EditState& memory, const Act& act) {
     const Scene& scene = *state.scene;
-    const Thing thing = state.selected;
+    const PartRef thing = state.selected;
     if (thing.index >= count_of(scene, thing.part)) return;
     ImGui::Dummy({0, 0.1f * ImGui::GetFontSize()});
     ImGui::Separator();
@@ -143,10 +143,10 @@ void draw_selected(const ViewState& state, EditMemory& memory, const Act& act) {
     ImGui::TextColored(accent, "%s", printable(name, 60).c_str());
     const std::vector<const Property*> properties = properties_of(scene, thing.part, thing.index);
     if (properties.empty()) ImGui::TextDisabled("belongs to the glTF; it cannot be edited here");
-    ImGui::PushID(place_of(scene, thing.part, thing.index).c_str());
+    ImGui::PushID(part_path(scene, thing.part, thing.index).c_str());
     for (const Property* property : properties) {
         const bool sun = thing.part == Part::light && is_distant(scene.lights[thing.index]);
-        if (sun && std::string_view(property->name) == "direction") draw_sun_place(state, thing.index, memory, act);
+        if (sun && std::string_view(property->name) == "direction") draw_sun_angles(state, thing.index, memory, act);
         draw_property(state, *property, thing.index, memory, act);
     }
     ImGui::PopID();
@@ -158,7 +158,7 @@ bool is_taken(const std::filesystem::path& file) {
     return std::filesystem::exists(file, ignored);
 }
 
-void propose_name(const ViewState& state, EditMemory& memory) {
+void propose_name(const ViewState& state, EditState& memory) {
     const std::string own = state.scene->file.string();
     if (memory.file_name_of == own) return;
     memory.file_name_of = own, memory.file_name = proposed_name(*state.session);
@@ -178,7 +178,7 @@ void draw_tabs(const ViewState& state, const Act& act) {
     tab("Lights and fog", "lights", state.lights_tab);
 }
 
-void draw_lights(const ViewState& state, EditMemory& memory, const Act& act) {
+void draw_lights(const ViewState& state, EditState& memory, const Act& act) {
     if (!state.session) return;
     if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) memory.held.clear();
     draw_steps(state, act);

@@ -29,7 +29,7 @@ void draw_help(const Act& act) {
 }
 }
 
-void draw_interface(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act) {
+void draw_interface(ViewState& state, const PanelResources& resources, PanelState& memory, const Act& act) {
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) ++memory.edits.drags;
     // Tab toggles the panels; it moves between fields only while text is being typed.
     ImGui::PushAllowKeyboardFocus(ImGui::GetIO().WantTextInput);

@@ -28,7 +28,7 @@ struct FileField {
 };
 
 // Fields of the files panel.
-struct FilesMemory {
+struct FilesState {
     std::filesystem::path scene; // that the other fields belong to
     FileField other, picture, sequence, fog;
     std::string frames, fog_frames; // empty = all of the scene's
@@ -37,37 +37,37 @@ struct FilesMemory {
 };
 
 // State that the panels keep from one interface frame to the next.
-struct PanelMemory {
+struct PanelState {
     std::string held_row; // setting that was reset by a double-click; ignores its slider until the mouse is up
-    FilesMemory files;
-    EditMemory edits;
+    FilesState files;
+    EditState edits;
 };
 
 using Act = std::function<void(const Action&)>; // does an action; errors become the state's message
 
-void draw_interface(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act);
+void draw_interface(ViewState& state, const PanelResources& resources, PanelState& memory, const Act& act);
 
 // The "Rendering" page of the side panel.
-void draw_rendering(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act);
+void draw_rendering(ViewState& state, const PanelResources& resources, PanelState& memory, const Act& act);
 
 // The timeline and its playback controls.
 void draw_time(const ViewState& state, const Act& act);
 
 // Files to open and to write, and the progress of the job that writes some.
-void draw_files(const ViewState& state, FilesMemory& memory, const Act& act);
+void draw_files(const ViewState& state, FilesState& memory, const Act& act);
 void draw_job(const JobStatus& job, const Act& act);
 
 // The technique's own settings and those it shares, as sliders.
-void draw_settings(ViewState& state, PanelMemory& memory, const Act& act);
+void draw_settings(ViewState& state, PanelState& memory, const Act& act);
 
 // Mode, size, samples, time and the mode's accuracy in one line.
 std::string status_line(const ViewState& state, const ShownPicture& picture);
 
 // Asks before unsaved edits are lost or a job is ended.
-void draw_question(const ViewState& state, const PanelResources& resources, EditMemory& memory, const Act& act);
+void draw_question(const ViewState& state, const PanelResources& resources, EditState& memory, const Act& act);
 
 // The image with its status line.
-void draw_picture(ViewState& state, const PanelResources& resources, EditMemory& edits, const Act& act);
+void draw_picture(ViewState& state, const PanelResources& resources, EditState& edits, const Act& act);
 
 // Explains the ray of a pixel, in the remaining space of the current window: curves on the left, the techniques'
 // results on the right.
@@ -82,13 +82,13 @@ float inspector_height(const ViewState& state, float whole);
 void draw_inspector(ViewState& state, const PanelResources& resources, const Act& act);
 
 // The side panel's page for lights and fog: a list, the selected one's properties, undo and saving.
-void draw_lights(const ViewState& state, EditMemory& memory, const Act& act);
+void draw_lights(const ViewState& state, EditState& memory, const Act& act);
 
 // Whether the file exists and would be overwritten.
 bool is_taken(const std::filesystem::path& file);
 
 // Proposes a name to save the scene as, once per scene file.
-void propose_name(const ViewState& state, EditMemory& memory);
+void propose_name(const ViewState& state, EditState& memory);
 
 // Buttons that switch between the two pages of the side panel.
 void draw_tabs(const ViewState& state, const Act& act);

@@ -18,7 +18,7 @@ constexpr float degrees_a_height = 180; // of orbit, for a drag as long as the i
 constexpr float still = 3;              // pixels the mouse may move in a click
 
 // The largest rectangle of the image's aspect ratio that fits the space, centered.
-PicturePlace fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
+ImageRect fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
     const float scale = std::min(space.x / static_cast<float>(size.x), space.y / static_cast<float>(size.y));
     const ImVec2 extent{scale * static_cast<float>(size.x), scale * static_cast<float>(size.y)};
     const ImVec2 low{std::floor(corner.x + 0.5f * (space.x - extent.x)),
@@ -27,7 +27,7 @@ PicturePlace fitted(ImVec2 corner, ImVec2 space, ivec2 size) {
 }
 
 // Rectangle of the image at the current zoom, aligned to whole window pixels.
-PicturePlace placed(const ViewState& state, ImVec2 corner, ImVec2 space, ivec2 size) {
+ImageRect placed(const ViewState& state, ImVec2 corner, ImVec2 space, ivec2 size) {
     if (state.zoom == 0) return fitted(corner, space, size);
     const float scale = static_cast<float>(state.zoom);
     const ImVec2 low{std::floor(corner.x + 0.5f * space.x - scale * state.zoom_at.x),
@@ -36,33 +36,33 @@ PicturePlace placed(const ViewState& state, ImVec2 corner, ImVec2 space, ivec2 s
 }
 
 // The part of it that is visible.
-PicturePlace seen(const PicturePlace& place, ImVec2 corner, ImVec2 space) {
-    return {{std::max(place.low.x, corner.x), std::max(place.low.y, corner.y)},
-            {std::min(place.high.x, corner.x + space.x), std::min(place.high.y, corner.y + space.y)}};
+ImageRect clipped(const ImageRect& rect, ImVec2 corner, ImVec2 space) {
+    return {{std::max(rect.low.x, corner.x), std::max(rect.low.y, corner.y)},
+            {std::min(rect.high.x, corner.x + space.x), std::min(rect.high.y, corner.y + space.y)}};
 }
 
 // The left one of images side by side.
-PicturePlace left_of(const PicturePlace& place, int across) {
-    return {place.low, {place.low.x + (place.high.x - place.low.x) / static_cast<float>(across), place.high.y}};
+ImageRect left_of(const ImageRect& rect, int across) {
+    return {rect.low, {rect.low.x + (rect.high.x - rect.low.x) / static_cast<float>(across), rect.high.y}};
 }
 
 // Image coordinates under the mouse, in fractional pixels.
-vec2 pointed(const PicturePlace& place, const ShownPicture& picture) {
+vec2 mouse_pixel(const ImageRect& rect, const ShownPicture& picture) {
     const ImVec2 at = ImGui::GetIO().MousePos;
-    return vec2(at.x - place.low.x, at.y - place.low.y) * (static_cast<float>(picture.wanted.y) / place.height());
+    return vec2(at.x - rect.low.x, at.y - rect.low.y) * (static_cast<float>(picture.wanted.y) / rect.height());
 }
 
 // With ctrl, the wheel zooms the image by factors of two about the mouse, and a drag pans it.
-void zoom_picture(const ViewState& state, const PicturePlace& place, const ShownPicture& picture, const Act& act) {
+void zoom_picture(const ViewState& state, const ImageRect& rect, const ShownPicture& picture, const Act& act) {
     const ImGuiIO& io = ImGui::GetIO();
-    const float scale = place.height() / static_cast<float>(picture.wanted.y);
+    const float scale = rect.height() / static_cast<float>(picture.wanted.y);
     const vec2 middle = state.zoom > 0 ? state.zoom_at : 0.5f * vec2(picture.wanted);
     const auto zoom = [&](double to, vec2 at) { act({Verb::zoom, {formatted("%.9g", to)}, {at.x, at.y}, {}}); };
     if (ImGui::IsItemHovered() && io.MouseWheel != 0) {
         const double step =
             io.MouseWheel > 0 ? std::floor(std::log2(scale) + 1.01) : std::ceil(std::log2(scale) - 1.01);
         const double to = std::exp2(std::clamp(step, -6.0, 6.0));
-        const vec2 point = pointed(place, picture);
+        const vec2 point = mouse_pixel(rect, picture);
         zoom(to, point + (middle - point) * static_cast<float>(scale / to));
     } else if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
         zoom(state.zoom > 0 ? state.zoom : scale, middle - vec2(io.MouseDelta.x, io.MouseDelta.y) / scale);
@@ -70,9 +70,9 @@ void zoom_picture(const ViewState& state, const PicturePlace& place, const Shown
 }
 
 // Moves the camera with the mouse: orbit, pan, look around, dolly.
-void move_camera(const PicturePlace& place, const Act& act) {
+void move_camera(const ImageRect& rect, const Act& act) {
     const ImGuiIO& io = ImGui::GetIO();
-    const double x = io.MouseDelta.x / place.height(), y = -io.MouseDelta.y / place.height();
+    const double x = io.MouseDelta.x / rect.height(), y = -io.MouseDelta.y / rect.height();
     if (ImGui::IsItemActive() && (x != 0 || y != 0)) {
         const bool shift = ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift;
         if (ImGui::IsMouseDown(ImGuiMouseButton_Right))
@@ -86,22 +86,22 @@ void move_camera(const PicturePlace& place, const Act& act) {
 }
 
 // Shift-click without a drag explains the pixel's ray.
-void ask_about_pixel(const PicturePlace& place, const ShownPicture& picture, const Act& act) {
+void ask_about_pixel(const ImageRect& rect, const ShownPicture& picture, const Act& act) {
     const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0);
     const bool clicked = ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left);
     if (!clicked || !ImGui::GetIO().KeyShift || std::abs(moved.x) + std::abs(moved.y) > still) return;
-    const vec2 pixel = pointed(place, picture);
+    const vec2 pixel = mouse_pixel(rect, picture);
     act({Verb::explain, {}, {std::fmod(pixel.x, static_cast<float>(picture.wanted.x)), pixel.y}, {}});
 }
 
 // Marks the pixel whose ray is explained, in each of the images side by side.
-void mark_pixel(const PicturePlace& place, const ViewState& state, const ShownPicture& picture) {
+void mark_pixel(const ImageRect& rect, const ViewState& state, const ShownPicture& picture) {
     if (!state.explain) return;
-    const float scale = place.height() / static_cast<float>(picture.wanted.y), type = ImGui::GetFontSize();
+    const float scale = rect.height() / static_cast<float>(picture.wanted.y), type = ImGui::GetFontSize();
     ImDrawList* list = ImGui::GetWindowDrawList();
     for (int i = 0; i < picture.across; ++i) {
         const vec2 at = scale * (vec2(*state.explain) + 0.5f + vec2(i * picture.wanted.x, 0));
-        const ImVec2 middle{place.low.x + at.x, place.low.y + at.y};
+        const ImVec2 middle{rect.low.x + at.x, rect.low.y + at.y};
         for (const auto& [color, wide] :
              {std::pair{IM_COL32(0, 0, 0, 200), 3.5f}, {ImGui::GetColorU32(accent), 1.5f}}) {
             list->AddCircle(middle, 0.5f * type, color, 0, wide);
@@ -159,9 +159,8 @@ float draw_upwards(ImVec2 low, const std::vector<Words>& words, float width) {
 }
 
 // The values of the pixel under the mouse, in the upper right.
-void draw_pixel(const PicturePlace& place, const PicturePlace& frame, const ViewState& state,
-                const ShownPicture& picture) {
-    const ivec2 at(glm::floor(pointed(place, picture)));
+void draw_pixel(const ImageRect& rect, const ImageRect& frame, const ViewState& state, const ShownPicture& picture) {
+    const ivec2 at(glm::floor(mouse_pixel(rect, picture)));
     const ivec2 whole = picture.wanted;
     if (!ImGui::IsItemHovered() || !picture.values || at.x < 0 || at.y < 0 || at.x >= picture.across * whole.x ||
         at.y >= whole.y)
@@ -177,48 +176,48 @@ void draw_pixel(const PicturePlace& place, const PicturePlace& frame, const View
 }
 
 // The wipe line between two techniques, which the mouse can drag, and their names.
-void draw_wipe(const PicturePlace& place, const ViewState& state, const ShownPicture& picture, const Act& act) {
-    const float type = ImGui::GetFontSize(), width = place.high.x - place.low.x;
-    const float x = place.low.x + state.shown.wipe * width;
-    ImGui::SetCursorScreenPos({x - 0.5f * type, place.low.y});
-    ImGui::InvisibleButton("wipe", {type, place.height()});
+void draw_wipe(const ImageRect& rect, const ViewState& state, const ShownPicture& picture, const Act& act) {
+    const float type = ImGui::GetFontSize(), width = rect.high.x - rect.low.x;
+    const float x = rect.low.x + state.shown.wipe * width;
+    ImGui::SetCursorScreenPos({x - 0.5f * type, rect.low.y});
+    ImGui::InvisibleButton("wipe", {type, rect.height()});
     const bool held = ImGui::IsItemActive();
     if (held && ImGui::GetIO().MouseDelta.x != 0)
-        act({Verb::wipe, {}, {(ImGui::GetIO().MousePos.x - place.low.x) / width}, {}});
+        act({Verb::wipe, {}, {(ImGui::GetIO().MousePos.x - rect.low.x) / width}, {}});
     if (held || ImGui::IsItemHovered()) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     const ImU32 color = ImGui::GetColorU32(held ? accent : ImVec4(0.85f, 0.85f, 0.87f, 0.8f));
-    ImGui::GetWindowDrawList()->AddLine({x, place.low.y}, {x, place.high.y}, color, 1.5f);
+    ImGui::GetWindowDrawList()->AddLine({x, rect.low.y}, {x, rect.high.y}, color, 1.5f);
     const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const float left = ImGui::CalcTextSize(picture.mode.c_str()).x + 1.5f * type;
-    draw_band({x - left, place.low.y + 0.5f * type}, {{picture.mode, text}}, width);
-    draw_band({x + 0.7f * type, place.low.y + 0.5f * type}, {{picture.beside, text}}, width);
+    draw_band({x - left, rect.low.y + 0.5f * type}, {{picture.mode, text}}, width);
+    draw_band({x + 0.7f * type, rect.low.y + 0.5f * type}, {{picture.beside, text}}, width);
 }
 
 // The names of two images side by side.
-void draw_names(const PicturePlace& place, const ViewState& state, const ShownPicture& picture) {
-    const float type = ImGui::GetFontSize(), middle = 0.5f * (place.low.x + place.high.x);
+void draw_names(const ImageRect& rect, const ViewState& state, const ShownPicture& picture) {
+    const float type = ImGui::GetFontSize(), middle = 0.5f * (rect.low.x + rect.high.x);
     const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const std::string wait = state.beside + (picture.quick ? ", when motion stops" : " ...");
-    draw_band({place.low.x + 0.5f * type, place.low.y + 0.5f * type}, {{picture.mode, text}}, middle - place.low.x);
-    draw_band({middle + 0.5f * type, place.low.y + 0.5f * type},
+    draw_band({rect.low.x + 0.5f * type, rect.low.y + 0.5f * type}, {{picture.mode, text}}, middle - rect.low.x);
+    draw_band({middle + 0.5f * type, rect.low.y + 0.5f * type},
               {{picture.beside.empty() ? wait : picture.beside, picture.beside.empty() ? quiet : text}},
-              place.high.x - middle);
-    ImGui::GetWindowDrawList()->AddLine({middle, place.low.y}, {middle, place.high.y}, IM_COL32(60, 60, 63, 255));
+              rect.high.x - middle);
+    ImGui::GetWindowDrawList()->AddLine({middle, rect.low.y}, {middle, rect.high.y}, IM_COL32(60, 60, 63, 255));
 }
 
 // The reference the image is compared with, and the errors against it, from `bottom` upwards.
-void draw_errors(const PicturePlace& place, float bottom, const ViewState& state, const ShownPicture& picture) {
+void draw_errors(const ImageRect& rect, float bottom, const ViewState& state, const ShownPicture& picture) {
     if (!picture.reference) {
         const bool wanted = state.shown.layer == ShownLayer::error || state.beside == reference_name;
         if (wanted)
             draw_band(
-                {place.low.x + 0.5f * ImGui::GetFontSize(), bottom - 1.9f * ImGui::GetFontSize()},
+                {rect.low.x + 0.5f * ImGui::GetFontSize(), bottom - 1.9f * ImGui::GetFontSize()},
                 {{picture.quick ? "the reference waits until motion stops" : "rendering the reference ...", quiet}},
-                place.high.x - place.low.x);
+                rect.high.x - rect.low.x);
         return;
     }
-    const float type = ImGui::GetFontSize(), line = 1.9f * type, left = place.low.x + 0.5f * type;
-    const float width = place.high.x - place.low.x - 2 * type;
+    const float type = ImGui::GetFontSize(), line = 1.9f * type, left = rect.low.x + 0.5f * type;
+    const float width = rect.high.x - rect.low.x - 2 * type;
     const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
     float y = bottom - line;
     draw_band({left, y}, {{reference_text(*picture.reference), text}}, width);
@@ -236,7 +235,7 @@ ImVec4 severity_color(const std::vector<LimitationGroup>& limitations) {
 }
 
 // "degraded: ambient light, and 1 more"
-std::string wrongs(const std::vector<LimitationGroup>& limitations) {
+std::string worst_text(const std::vector<LimitationGroup>& limitations) {
     if (limitations.empty() || limitations[0].worst.severity == Severity::info) return "no known limitations";
     const Severity severity = limitations[0].worst.severity;
     const auto alike =
@@ -276,7 +275,7 @@ void draw_messages(const ViewState& state, const PanelResources& resources, ImVe
 }
 }
 
-void draw_picture(ViewState& state, const PanelResources& resources, EditMemory& edits, const Act& act) {
+void draw_picture(ViewState& state, const PanelResources& resources, EditState& edits, const Act& act) {
     const ImVec2 corner = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
     const ImVec4 text_color = ImGui::GetStyle().Colors[ImGuiCol_Text];
     const float type = ImGui::GetFontSize();
@@ -285,32 +284,32 @@ void draw_picture(ViewState& state, const PanelResources& resources, EditMemory&
             ImGui::TextDisabled("loading %s ...", state.scene_file.filename().c_str());
     } else {
         const ivec2 wanted = resources.picture->wanted;
-        const PicturePlace place = placed(state, corner, space, {resources.picture->across * wanted.x, wanted.y});
-        const PicturePlace frame = seen(place, corner, space);
-        ImGui::GetWindowDrawList()->AddImage(resources.texture, place.low, place.high);
+        const ImageRect rect = placed(state, corner, space, {resources.picture->across * wanted.x, wanted.y});
+        const ImageRect frame = clipped(rect, corner, space);
+        ImGui::GetWindowDrawList()->AddImage(resources.texture, rect.low, rect.high);
         if (resources.picture->across > 1)
-            draw_names(place, state, *resources.picture);
+            draw_names(rect, state, *resources.picture);
         else if (!resources.picture->beside.empty())
-            draw_wipe(place, state, *resources.picture, act);
+            draw_wipe(rect, state, *resources.picture, act);
         ImGui::SetCursorScreenPos(corner);
         ImGui::InvisibleButton("picture", space,
                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                    ImGuiButtonFlags_MouseButtonMiddle);
-        draw_pixel(place, frame, state, *resources.picture);
-        if (!draw_handles(state, wanted, left_of(place, resources.picture->across), edits, act)) {
+        draw_pixel(rect, frame, state, *resources.picture);
+        if (!draw_handles(state, wanted, left_of(rect, resources.picture->across), edits, act)) {
             if (ImGui::GetIO().KeyCtrl)
-                zoom_picture(state, place, *resources.picture, act);
+                zoom_picture(state, rect, *resources.picture, act);
             else
-                move_camera(place, act);
+                move_camera(rect, act);
         }
-        ask_about_pixel(place, *resources.picture, act);
-        mark_pixel(place, state, *resources.picture);
+        ask_about_pixel(rect, *resources.picture, act);
+        mark_pixel(rect, state, *resources.picture);
 
         // Always on the image: what it is, how good it is, what is wrong with it.
         const float width = frame.high.x - frame.low.x - 2 * type;
         std::vector<Words> words{{status_line(state, *resources.picture), text_color}};
         if (resources.picture->mode == state.mode)
-            words.push_back({wrongs(resources.limitations), severity_color(resources.limitations)});
+            words.push_back({worst_text(resources.limitations), severity_color(resources.limitations)});
         const bool held_against = state.shown.layer == ShownLayer::error || state.beside == reference_name;
         const float bottom = held_against ? std::min(frame.high.y + 12 * type, corner.y + space.y) : frame.high.y;
         const float top = draw_upwards({frame.low.x + 0.5f * type, bottom - 0.5f * type}, words, width);

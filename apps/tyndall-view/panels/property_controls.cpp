@@ -23,7 +23,7 @@ std::string number_format(const Property& property, float value) {
 }
 
 // The range of a slider, which stays fixed while it is held.
-SliderRange held_range(const Property& property, float value, const std::string& path, const EditMemory& memory) {
+SliderRange held_range(const Property& property, float value, const std::string& path, const EditState& memory) {
     return memory.held == path ? memory.range : slider_range(property, value);
 }
 
@@ -100,16 +100,16 @@ void draw_diamond(float right, float middle) {
 }
 
 // Stores the reason without the path of the property, since it is shown at the property's control.
-void note_refusal(const ViewState& state, Part part, const std::string& path, EditMemory& memory) {
+void note_refusal(const ViewState& state, Part part, const std::string& path, EditState& memory) {
     memory.refused.clear();
     if (state.message.empty() || !state.message_is_error) return;
     const std::string prefix = path + ": ";
     const bool here = state.message.starts_with(prefix);
-    memory.refused = path, memory.why = in_words(part, here ? state.message.substr(prefix.size()) : state.message);
+    memory.refused = path, memory.why = with_labels(part, here ? state.message.substr(prefix.size()) : state.message);
 }
 
 // Changes within one mouse drag form one undo step; each typed value is its own.
-uint64_t drag_now(const EditMemory& memory) { return ImGui::IsMouseDown(ImGuiMouseButton_Left) ? memory.drags : 0; }
+uint64_t drag_now(const EditState& memory) { return ImGui::IsMouseDown(ImGuiMouseButton_Left) ? memory.drags : 0; }
 
 // A label on the left; returns whether the mouse is on it.
 bool draw_label(const char* text, bool keyed) {
@@ -130,12 +130,12 @@ ImVec4 shown_color(vec3 linear) {
     return {srgb_encoded(color.x), srgb_encoded(color.y), srgb_encoded(color.z), 1};
 }
 
-void draw_property(const ViewState& state, const Property& property, size_t index, EditMemory& memory, const Act& act) {
+void draw_property(const ViewState& state, const Property& property, size_t index, EditState& memory, const Act& act) {
     const Scene& scene = *state.scene;
     const double seconds = seconds_of(state);
     vec3 value = value_at(scene, property, index, seconds);
     const bool keyed = is_keyed(scene, property, index);
-    const std::string path = place_of(scene, property.part, index) + "/" + property.name;
+    const std::string path = part_path(scene, property.part, index) + "/" + property.name;
 
     ImGui::PushID(property.name);
     bool hovered = draw_label(words_of(property).label, keyed);
@@ -158,10 +158,10 @@ void draw_property(const ViewState& state, const Property& property, size_t inde
     ImGui::PopID();
 }
 
-void draw_sun_place(const ViewState& state, size_t light, const EditMemory& memory, const Act& act) {
+void draw_sun_angles(const ViewState& state, size_t light, const EditState& memory, const Act& act) {
     const double seconds = seconds_of(state);
-    const vec3 direction = light_place(*state.scene, light, seconds).direction;
-    SunPlace place = sun_place(direction);
+    const vec3 direction = light_placement(*state.scene, light, seconds).direction;
+    SunAngles angles = sun_angles(direction);
     const auto slider = [&](const char* label, const char* help, float& value, float low, float high) {
         ImGui::PushID(label);
         bool hovered = draw_label(label, false);
@@ -170,10 +170,10 @@ void draw_sun_place(const ViewState& state, size_t light, const EditMemory& memo
         if (hovered) ImGui::SetTooltip("%s", help);
         ImGui::PopID();
         if (changed)
-            act(action_of(*state.scene, {Part::light, light, "direction", direction_from(place), seconds},
+            act(action_of(*state.scene, {Part::light, light, "direction", direction_from(angles), seconds},
                           drag_now(memory)));
     };
-    slider("elevation", "Height of the sun above the horizon", place.height, -10, highest_sun);
-    slider("azimuth", "Direction of the sun: 0 is +z, 90 is +x", place.bearing, 0, 360);
+    slider("elevation", "Height of the sun above the horizon", angles.height, -10, highest_sun);
+    slider("azimuth", "Direction of the sun: 0 is +z, 90 is +x", angles.azimuth, 0, 360);
 }
 }

@@ -122,9 +122,9 @@ void draw_cameras(const ViewState& state, const Act& act) {
                                       ? state.scene->cameras[static_cast<size_t>(state.scene->camera)].name
                                       : state.camera;
     for (const CameraSource& camera : state.scene->cameras)
-        if (ImGui::Selectable((camera.name + "##camera").c_str(), !state.free && camera.name == standing))
+        if (ImGui::Selectable((camera.name + "##camera").c_str(), !state.free_camera && camera.name == standing))
             act({Verb::camera, {camera.name}, {}, {}});
-    if (!state.free) return;
+    if (!state.free_camera) return;
     ImGui::Selectable("moved by hand", true);
     if (ImGui::Button("Copy for the scene file")) ImGui::SetClipboardText(camera_json(viewpoint(state)).c_str());
     tooltip(camera_json(viewpoint(state)));
@@ -175,7 +175,7 @@ void draw_times(const PanelResources& resources) {
 }
 }
 
-void draw_rendering(ViewState& state, const PanelResources& resources, PanelMemory& memory, const Act& act) {
+void draw_rendering(ViewState& state, const PanelResources& resources, PanelState& memory, const Act& act) {
     draw_modes(state, act);
     draw_shown(state, act);
     draw_looking_into(state, act);

@@ -64,7 +64,7 @@ void explain(const SettingRow& row, const std::string& usual) {
     ImGui::EndTooltip();
 }
 
-void draw_row(ViewState& state, const SettingRow& row, const Settings& usual_settings, PanelMemory& memory,
+void draw_row(ViewState& state, const SettingRow& row, const Settings& usual_settings, PanelState& memory,
               const Act& act) {
     const std::string usual = row.get(usual_settings), before = row.get(state.settings);
     ImGui::PushID(row.name.c_str());
@@ -93,7 +93,7 @@ void draw_row(ViewState& state, const SettingRow& row, const Settings& usual_set
 }
 }
 
-void draw_settings(ViewState& state, PanelMemory& memory, const Act& act) {
+void draw_settings(ViewState& state, PanelState& memory, const Act& act) {
     if (!ImGui::IsMouseDown(0)) memory.held_row.clear();
     const Settings usual = settings_for(state.quality);
     bool first = true;

@@ -59,7 +59,7 @@ float draw_density(const VolumePicture& shown, void* texture, ImVec2 low, ImVec2
 }
 
 void draw_controls(const ViewState& state, const VolumePicture& shown, const Act& act) {
-    const VolumeQuestion& asked = state.volume;
+    const VolumeRequest& asked = state.volume;
     const float type = ImGui::GetFontSize();
     ImGui::SetNextItemWidth(9 * type);
     if (ImGui::BeginCombo("##medium", shown.medium.empty() ? "no fog" : shown.medium.c_str())) {

@@ -26,18 +26,18 @@ struct Options {
 };
 
 // The files that PARTS name: the files themselves, or with --parts all parts of frames with those names.
-std::vector<std::string> files_of(const Options& texts) {
-    if (texts.count.empty()) {
-        if (!texts.frames.empty()) fail(ExitCode::usage, "--frames", "needs --parts");
-        return texts.parts;
+std::vector<std::string> files_of(const Options& args) {
+    if (args.count.empty()) {
+        if (!args.frames.empty()) fail(ExitCode::usage, "--frames", "needs --parts");
+        return args.parts;
     }
     Grouping grouping;
-    grouping.parts = static_cast<int>(integer_option("--parts", texts.count, 1, 1 << 16));
+    grouping.parts = static_cast<int>(integer_option("--parts", args.count, 1, 1 << 16));
     std::vector<std::string> files;
-    for (const std::string& pattern : texts.parts) {
-        if (has_frame_token(pattern) == texts.frames.empty())
+    for (const std::string& pattern : args.parts) {
+        if (has_frame_token(pattern) == args.frames.empty())
             fail(ExitCode::usage, "--frames", "needs a name with ####, and such a name needs --frames");
-        for (const int frame : texts.frames.empty() ? std::vector{0} : parse_frames(texts.frames))
+        for (const int frame : args.frames.empty() ? std::vector{0} : parse_frames(args.frames))
             for (grouping.part = 1; grouping.part <= grouping.parts; ++grouping.part)
                 files.push_back(part_name(frame_name(pattern, frame), grouping));
     }
@@ -46,7 +46,7 @@ std::vector<std::string> files_of(const Options& texts) {
 
 // Waits at most `seconds` for all files to exist, since some file systems show new files late. Unless `all`, drops
 // those that are missing.
-std::vector<std::string> found(std::vector<std::string> names, double seconds, bool all) {
+std::vector<std::string> wait_for_files(std::vector<std::string> names, double seconds, bool all) {
     const auto missing = [](const std::string& name) {
         std::error_code error;
         return !std::filesystem::exists(name, error);
@@ -99,7 +99,7 @@ void say_lacking(const SavedPlan& plan, double lacking, int groups, int frame, c
 
 // A merge of all frames, and its outcome.
 struct Merge {
-    const Options& texts;
+    const Options& args;
     const Globals& globals;
     SavedPlan plan{};
     std::vector<Json> reports{};
@@ -132,13 +132,13 @@ void say_merged(const Merge& merge, int frame, const std::string& file, const Me
 void merge_one(Merge& merge, const Scene& scene, int frame, const std::vector<PartFile>& parts,
                const PartGroups& groups) {
     const double start = steady_seconds();
-    const std::string file = frame_name(merge.texts.output, frame);
+    const std::string file = frame_name(merge.args.output, frame);
     const MergedFrame result = merge_frame(parts, groups, scene, merge.plan);
     write_exr(file, result.layers, result.provenance, merge.plan.request.exr);
     const bool whole = groups.gap.empty();
-    const double lacking = whole ? groups_lacking(merge.plan.request.grouping.error, result.stats, groups.groups) : 0;
+    const double lacking = whole ? missing_groups(merge.plan.request.grouping.error, result.stats, groups.groups) : 0;
     if (lacking > 0 && !merge.globals.quiet) say_lacking(merge.plan, lacking, groups.groups, frame, file);
-    if (merge.texts.remove && whole && lacking == 0) // these parts are needed again when groups are added
+    if (merge.args.remove && whole && lacking == 0) // these parts are needed again when groups are added
         for (const PartFile& part : parts) std::filesystem::remove(part.file);
     merge.non_finite += result.stats.non_finite, merge.missed += lacking > 0, merge.partial += !whole;
     merge.reports.push_back(frame_json(frame, file, result.stats, groups));
@@ -169,25 +169,25 @@ int outcome(const Merge& merge) {
                      others.first));
 }
 
-int run_merge(const Options& texts, const Globals& globals) {
-    check_pattern(texts.output, ".exr", false);
-    const double wait = texts.wait.empty() ? 0 : number_option("--wait", texts.wait, 0, 86400);
-    const std::vector<std::string> names = found(files_of(texts), wait, !texts.partial);
-    if (names.empty()) fail(ExitCode::unreadable, texts.parts[0], "no such file, and no other part exists");
+int run_merge(const Options& args, const Globals& globals) {
+    check_pattern(args.output, ".exr", false);
+    const double wait = args.wait.empty() ? 0 : number_option("--wait", args.wait, 0, 86400);
+    const std::vector<std::string> names = wait_for_files(files_of(args), wait, !args.partial);
+    if (names.empty()) fail(ExitCode::unreadable, args.parts[0], "no such file, and no other part exists");
     std::map<int, std::vector<PartFile>> frames = read_parts(names);
-    if (frames.size() > 1 && !has_frame_token(texts.output)) refuse_stray(frames);
+    if (frames.size() > 1 && !has_frame_token(args.output)) refuse_stray(frames);
     const PartFile& first = frames.begin()->second[0];
-    Merge merge{texts, globals};
-    merge.plan = load_plan(texts.plan.empty() ? first.plan_file : std::filesystem::path(texts.plan));
-    merge.plan.request.output = texts.output;
+    Merge merge{args, globals};
+    merge.plan = load_plan(args.plan.empty() ? first.plan_file : std::filesystem::path(args.plan));
+    merge.plan.request.output = args.output;
     use_planned_isa(merge.plan.request.isa);
-    OutputPlaces places;
+    OutputPaths places;
     std::map<int, PartGroups> groups;
     for (auto& [frame, parts] : frames) {
         groups[frame] = check_parts(parts, merge.plan);
-        if (!groups[frame].gap.empty() && !texts.partial) refuse(groups[frame].beside.string(), groups[frame].gap);
+        if (!groups[frame].gap.empty() && !args.partial) refuse(groups[frame].beside.string(), groups[frame].gap);
         check_prepared(merge.plan, frame);
-        places.check(std::filesystem::path(frame_name(texts.output, frame)));
+        places.check(std::filesystem::path(frame_name(args.output, frame)));
     }
     const Scene scene = load_scene(merge.plan.request.scene_file, {merge.plan.request.light_units});
     check_inputs(merge.plan, scene);
@@ -203,21 +203,21 @@ int run_merge(const Options& texts, const Globals& globals) {
 
 Run add_merge(const Command& program) {
     const Command command = program.command("merge", "merge the parts of frames, bit-identical to a single run");
-    auto texts = std::make_shared<Options>();
-    command.options("PARTS", texts->parts, "EXR parts that tyndall render --plan ... --part i/N wrote", "").required();
-    command.option("-o,--output", texts->output, "files to write; #### stands for the frame number", "out.####.exr")
+    auto args = std::make_shared<Options>();
+    command.options("PARTS", args->parts, "EXR parts that tyndall render --plan ... --part i/N wrote", "").required();
+    command.option("-o,--output", args->output, "files to write; #### stands for the frame number", "out.####.exr")
         .required();
-    command.option("--parts", texts->count, "parts per frame; PARTS are then the names that render -o was given", "N");
-    command.option("--frames", texts->frames, "with --parts: the frames to merge, where names have ####", "RANGE");
-    command.option("--plan", texts->plan, "the plan, if it has moved since the parts were rendered", "FILE");
-    command.option("--wait", texts->wait,
+    command.option("--parts", args->count, "parts per frame; PARTS are then the names that render -o was given", "N");
+    command.option("--frames", args->frames, "with --parts: the frames to merge, where names have ####", "RANGE");
+    command.option("--plan", args->plan, "the plan, if it has moved since the parts were rendered", "FILE");
+    command.option("--wait", args->wait,
                    "wait at most this many seconds for named parts that do not exist yet: a\n"
                    "shared file system may show new files late (default: 0)",
                    "SECONDS");
-    command.flag("--partial", texts->partial,
+    command.flag("--partial", args->partial,
                  "merge the existing parts even if some are missing: more noise, and exit\n"
                  "code 1");
-    command.flag("--remove-parts", texts->remove,
+    command.flag("--remove-parts", args->remove,
                  "remove the parts of a frame once it is written and\nmeets its target");
     command.footer(
         "Example: tyndall merge out/window.0001.part-*.exr -o out/window.0001.exr\n"
@@ -225,6 +225,6 @@ Run add_merge(const Command& program) {
         "out/window.####.exr\n"
         "Every sample must be present exactly once: a part that is missing, duplicate, damaged or made from\n"
         "other inputs ends it with exit code 3 and the name of the file, and nothing is written.");
-    return [texts](const Globals& globals) { return run_merge(*texts, globals); };
+    return [args](const Globals& globals) { return run_merge(*args, globals); };
 }
 }

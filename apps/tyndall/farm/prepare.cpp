@@ -66,9 +66,9 @@ Json frame_json(int frame, const std::vector<CacheCost>& costs, const CacheFolde
     return json_object({{"frame", frame}, {"things", json_list(costs, thing)}});
 }
 
-int run_clean(const Options& texts, const SavedPlan& plan, const Globals& globals) {
-    const uint64_t bytes = clean_prepared(plan, texts.clean_all);
-    if (globals.json) print_report(json_line({{"plan", texts.plan}, {"removed_bytes", static_cast<double>(bytes)}}));
+int run_clean(const Options& args, const SavedPlan& plan, const Globals& globals) {
+    const uint64_t bytes = clean_prepared(plan, args.clean_all);
+    if (globals.json) print_report(json_line({{"plan", args.plan}, {"removed_bytes", static_cast<double>(bytes)}}));
     if (!globals.quiet) say(bytes_text(static_cast<double>(bytes)) + " removed");
     return 0;
 }
@@ -79,11 +79,11 @@ void check_frames(const SavedPlan& plan, const std::vector<int>& frames) {
             fail(ExitCode::usage, "--frames", formatted("frame %d is not in the plan", frame));
 }
 
-int run_prepare(const Options& texts, const Globals& globals) {
-    const double limit = number_option("--cache-size", texts.size, 0, 1e9);
-    const SavedPlan plan = load_plan(texts.plan);
-    if (texts.clean || texts.clean_all) return run_clean(texts, plan, globals);
-    const std::vector<int> frames = texts.frames.empty() ? plan.request.frames : parse_frames(texts.frames);
+int run_prepare(const Options& args, const Globals& globals) {
+    const double limit = number_option("--cache-size", args.size, 0, 1e9);
+    const SavedPlan plan = load_plan(args.plan);
+    if (args.clean || args.clean_all) return run_clean(args, plan, globals);
+    const std::vector<int> frames = args.frames.empty() ? plan.request.frames : parse_frames(args.frames);
     check_frames(plan, frames);
     use_planned_isa(plan.request.isa);
     set_stop_remark("; finished files are kept");
@@ -110,7 +110,7 @@ int run_prepare(const Options& texts, const Globals& globals) {
     for (const auto& [name, entry] : folder->files) bytes += static_cast<double>(entry.stamp.size);
     if (globals.json)
         print_report(json_line(
-            {{"plan", texts.plan}, {"folder", folder->folder.string()}, {"bytes", bytes}, {"frames", reports}}));
+            {{"plan", args.plan}, {"folder", folder->folder.string()}, {"bytes", bytes}, {"frames", reports}}));
     if (globals.quiet) return 0;
     if (no_room) say("note: --cache-size leaves no room for some of it: each part recomputes that");
     say(count_text(frames.size(), "frame") + " prepared in " + seconds_text(steady_seconds() - start) + ": " +
@@ -121,16 +121,16 @@ int run_prepare(const Options& texts, const Globals& globals) {
 
 Run add_prepare(const Command& program) {
     const Command command = program.command("prepare", "compute once what all parts of a planned frame share");
-    auto texts = std::make_shared<Options>();
-    command.option("--plan", texts->plan, "a plan that tyndall plan --save wrote", "FILE").required();
-    command.option("--frames", texts->frames, "frames of the plan to prepare (default: all)", "RANGE");
-    command.option("--cache-size", texts->size,
+    auto args = std::make_shared<Options>();
+    command.option("--plan", args->plan, "a plan that tyndall plan --save wrote", "FILE").required();
+    command.option("--frames", args->frames, "frames of the plan to prepare (default: all)", "RANGE");
+    command.option("--cache-size", args->size,
                    "size limit of the folder (default: 32); what does not fit\nis recomputed by each part", "GB");
-    command.flag("--clean", texts->clean, "remove what no frame of the plan needs, and prepare nothing");
-    command.flag("--clean-all", texts->clean_all, "remove all that was prepared, and prepare nothing");
+    command.flag("--clean", args->clean, "remove what no frame of the plan needs, and prepare nothing");
+    command.flag("--clean-all", args->clean_all, "remove all that was prepared, and prepare nothing");
     command.footer("Example: tyndall prepare --plan out/window.plan.json\n"
                    "Fog ready for sampling, light grids and other slow results are stored beside the plan\n"
                    "(out/window.plan.cache); tyndall render --plan finds them by itself. Images stay bit-identical.");
-    return [texts](const Globals& globals) { return run_prepare(*texts, globals); };
+    return [args](const Globals& globals) { return run_prepare(*args, globals); };
 }
 }

@@ -84,14 +84,14 @@ std::string status_text(const FarmJob& job, const FarmStatus& status, const Coun
     return text;
 }
 
-int run_status(const Options& texts, const Globals& globals) {
+int run_status(const Options& args, const Globals& globals) {
     const double start = steady_seconds();
-    const FarmJob job = load_job(texts.folder);
-    const FarmStatus status = look_at(job, texts.verify, cancel_flag());
+    const FarmJob job = load_job(args.folder);
+    const FarmStatus status = job_status(job, args.verify, cancel_flag());
     stop_if_cancelled();
-    if (!texts.tasks.empty()) {
-        choice_among("--tasks", texts.tasks, {"plan", "prepare", "parts", "merge"});
-        print_report(joined(slurm_arrays(missing_tasks(job, status, texts.tasks)), "\n"));
+    if (!args.tasks.empty()) {
+        choice_among("--tasks", args.tasks, {"plan", "prepare", "parts", "merge"});
+        print_report(joined(slurm_arrays(missing_tasks(job, status, args.tasks)), "\n"));
         return 0;
     }
     const Counts counts = counted(status);
@@ -106,16 +106,16 @@ int run_status(const Options& texts, const Globals& globals) {
 
 Run add_status(const Command& program) {
     const Command command = program.command("status", "what a farm job has finished, and how to render the rest");
-    auto texts = std::make_shared<Options>();
-    command.option("FOLDER", texts->folder, "folder that tyndall submit wrote", "").required();
-    command.flag("--verify", texts->verify, "read every byte of every file (default: names, sizes and headers)");
-    command.option("--tasks", texts->tasks,
+    auto args = std::make_shared<Options>();
+    command.option("FOLDER", args->folder, "folder that tyndall submit wrote", "").required();
+    command.flag("--verify", args->verify, "read every byte of every file (default: names, sizes and headers)");
+    command.option("--tasks", args->tasks,
                    "print only the unfinished task numbers of a step, as arrays for submit.sh:\n"
                    "plan, prepare, parts or merge",
                    "STEP");
     command.footer("Example: tyndall status out/window\n"
                    "Frames whose parts were removed count as finished. Exit code 0: all frames are finished; 1: some\n"
                    "are not, and the commands that render them are printed.");
-    return [texts](const Globals& globals) { return run_status(*texts, globals); };
+    return [args](const Globals& globals) { return run_status(*args, globals); };
 }
 }

@@ -37,26 +37,26 @@ int number_or(const char* name, const std::string& text, int otherwise, int high
     return text.empty() ? otherwise : static_cast<int>(integer_option(name, text, 1, high));
 }
 
-FarmJob job_of(const Options& texts, const Scene& scene) {
+FarmJob job_of(const Options& args, const Scene& scene) {
     std::error_code ignored;
     FarmJob job;
-    job.folder = job_folder(texts.folder);
-    job.engine = texts.engine;
+    job.folder = job_folder(args.folder);
+    job.engine = args.engine;
     job.program = std::filesystem::read_symlink("/proc/self/exe", ignored).string();
-    job.scene = std::filesystem::absolute(texts.render.scene).lexically_normal().string();
+    job.scene = std::filesystem::absolute(args.render.scene).lexically_normal().string();
     job.name = job_name_of(job.scene);
-    job.frames = texts.render.frames.empty() ? frames_between(scene.first_frame, scene.last_frame)
-                                             : parse_frames(texts.render.frames);
+    job.frames = args.render.frames.empty() ? frames_between(scene.first_frame, scene.last_frame)
+                                            : parse_frames(args.render.frames);
     std::ranges::sort(job.frames);
-    job.parts = number_or("--parts", texts.parts, 1, 1 << 16);
-    job.chunk = number_or("--chunk", texts.chunk, 1, 1000000);
-    job.cpus = number_or("--cpus", texts.cpus, 0, 1024);
-    job.memory = number_or("--memory", texts.memory, 0, 1 << 30);
-    job.minutes = number_or("--minutes", texts.minutes, 0, 1 << 24);
-    job.plan_for_each_frame = texts.render.mode == automatic || !texts.render.target_error.empty();
-    job.plan_options = planned_words(texts.render);
-    if (!texts.groups.empty()) job.plan_options.insert(job.plan_options.end(), {"--groups", texts.groups});
-    job.remove_parts = texts.remove_parts;
+    job.parts = number_or("--parts", args.parts, 1, 1 << 16);
+    job.chunk = number_or("--chunk", args.chunk, 1, 1000000);
+    job.cpus = number_or("--cpus", args.cpus, 0, 1024);
+    job.memory = number_or("--memory", args.memory, 0, 1 << 30);
+    job.minutes = number_or("--minutes", args.minutes, 0, 1 << 24);
+    job.plan_for_each_frame = args.render.mode == automatic || !args.render.target_error.empty();
+    job.plan_options = planned_words(args.render);
+    if (!args.groups.empty()) job.plan_options.insert(job.plan_options.end(), {"--groups", args.groups});
+    job.remove_parts = args.remove_parts;
     if (job.plan_for_each_frame && job.chunk > 1)
         fail(ExitCode::usage, "--chunk", "with --target-error or --mode auto, each frame has its own plan and task");
     return job;
@@ -121,16 +121,16 @@ void check_parts_of(const FarmJob& job, const Scene& scene) {
     }
 }
 
-void write_job(const FarmJob& job, const FarmFiles& files, const Options& texts, const Scene& scene,
+void write_job(const FarmJob& job, const FarmFiles& files, const Options& args, const Scene& scene,
                const Globals& globals) {
-    OutputPlaces places;
+    OutputPaths places;
     places.check(job.folder / "job.json");
     if (!job.plan_for_each_frame) {
         Globals quiet = globals;
         quiet.quiet = true;
-        RenderOptions render = texts.render;
+        RenderOptions render = args.render;
         render.frames = format_frames(job.frames);
-        save_plan_as_asked(render, texts.groups, (job.folder / "plan.json").string(), quiet);
+        save_plan_as_asked(render, args.groups, (job.folder / "plan.json").string(), quiet);
         check_parts_of(job, scene);
     }
     for (const char* name : {"parts", "frames", "logs", "plans"})
@@ -169,64 +169,64 @@ std::string forecast_text(const TaskForecast& forecast) {
     return text;
 }
 
-int run_submit(const Options& texts, const Globals& globals) {
-    choice_among("ENGINE", texts.engine, {"slurm", "openjd"});
-    if (texts.dry_run && texts.run) fail(ExitCode::usage, "--run", "cannot be combined with --dry-run");
-    check_for_plan(texts.render, texts.groups);
-    const Mode& mode = texts.render.mode == automatic ? main_mode() : find_mode(texts.render.mode, "--mode");
-    RenderRequest request = make_request(texts.render, mode);
+int run_submit(const Options& args, const Globals& globals) {
+    choice_among("ENGINE", args.engine, {"slurm", "openjd"});
+    if (args.dry_run && args.run) fail(ExitCode::usage, "--run", "cannot be combined with --dry-run");
+    check_for_plan(args.render, args.groups);
+    const Mode& mode = args.render.mode == automatic ? main_mode() : find_mode(args.render.mode, "--mode");
+    RenderRequest request = make_request(args.render, mode);
     request.mode = mode.name;
-    const Scene scene = load_scene(request.scene_file, load_options(texts.render));
+    const Scene scene = load_scene(request.scene_file, load_options(args.render));
     find_camera(scene, request.camera);
-    const FarmJob job = job_of(texts, scene);
+    const FarmJob job = job_of(args, scene);
     check_folder(job);
     const TaskForecast forecast = forecast_task(job, scene, request, cancel_flag());
     const FarmFiles files = files_of(job, scene, request, limits_of(job, forecast));
-    if (texts.dry_run) {
+    if (args.dry_run) {
         say_dry(job, files);
         return 0;
     }
-    write_job(job, files, texts, scene, globals);
+    write_job(job, files, args, scene, globals);
     if (!globals.quiet) {
         say(printable(job.folder.string(), 300) + ": " + count_text(job.frames.size(), "frame") + " in " +
             count_text(static_cast<uint64_t>(job.parts), "part") + ", " + job.engine + "; " + forecast_text(forecast));
-        say((texts.run ? "running: " : "to submit it: ") + printable(shell_text(run_words(job)), 400));
+        say((args.run ? "running: " : "to submit it: ") + printable(shell_text(run_words(job)), 400));
     }
-    if (texts.run) run(run_words(job));
+    if (args.run) run(run_words(job));
     return 0;
 }
 }
 
 Run add_submit(const Command& program) {
     const Command command = program.command("submit", "write a job for a render farm, and submit it with --run");
-    auto texts = std::make_shared<Options>();
-    RenderOptions& render = texts->render;
+    auto args = std::make_shared<Options>();
+    RenderOptions& render = args->render;
     render.output = "frames.####.exr"; // for the checks of a plan; files go to the folder
-    command.option("ENGINE", texts->engine, "slurm or openjd (Open Job Description: Deadline Cloud and others)", "")
+    command.option("ENGINE", args->engine, "slurm or openjd (Open Job Description: Deadline Cloud and others)", "")
         .required();
     command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
         .required();
-    command.option("-o,--output", texts->folder, "folder of the job: scripts, plan, parts, frames, logs", "FOLDER")
+    command.option("-o,--output", args->folder, "folder of the job: scripts, plan, parts, frames, logs", "FOLDER")
         .required();
-    command.option("--parts", texts->parts, "parts per frame (default: 1)", "N");
-    command.option("--chunk", texts->chunk, "frames per task (default: 1)", "N");
-    command.option("--cpus", texts->cpus, "processors per task (default: the engine's)", "N");
-    command.option("--memory", texts->memory, "memory limit per task, MiB (default: from a forecast)", "N");
-    command.option("--minutes", texts->minutes,
+    command.option("--parts", args->parts, "parts per frame (default: 1)", "N");
+    command.option("--chunk", args->chunk, "frames per task (default: 1)", "N");
+    command.option("--cpus", args->cpus, "processors per task (default: the engine's)", "N");
+    command.option("--memory", args->memory, "memory limit per task, MiB (default: from a forecast)", "N");
+    command.option("--minutes", args->minutes,
                    "time limit per task, for Slurm (default: from a forecast; with --target-error\n"
                    "the partition's)",
                    "N");
-    command.flag("--remove-parts", texts->remove_parts, "remove the parts of a frame once it is merged");
-    command.flag("--dry-run", texts->dry_run, "print what would be written, and write nothing");
-    command.flag("--run", texts->run, "submit the job: with sbatch, or with openjd run on this machine");
+    command.flag("--remove-parts", args->remove_parts, "remove the parts of a frame once it is merged");
+    command.flag("--dry-run", args->dry_run, "print what would be written, and write nothing");
+    command.flag("--run", args->run, "submit the job: with sbatch, or with openjd run on this machine");
     command.option("--mode", render.mode, "rendering technique (default: march), or auto: chosen for each frame",
                    "NAME");
-    add_groups_option(command, texts->groups);
+    add_groups_option(command, args->groups);
     add_planned_options(command, render);
     command.footer(
         "Example: tyndall submit slurm scenes/window.json --frames 1-24 --parts 3 --samples 64 -o out/window\n"
         "With --target-error, or --mode auto, tasks make a plan for each frame first. tyndall status FOLDER\n"
         "shows what is finished, and how to render what is not.");
-    return [texts](const Globals& globals) { return run_submit(*texts, globals); };
+    return [args](const Globals& globals) { return run_submit(*args, globals); };
 }
 }

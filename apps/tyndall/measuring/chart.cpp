@@ -31,30 +31,30 @@ ivec2 chart_size(const Scene& scene, bool quick) {
     return {width, std::max(1, static_cast<int>(std::lround(width * shape)))};
 }
 
-ChartJob make_job(const Options& texts) {
+ChartJob make_job(const Options& args) {
     ChartJob job;
-    job.render.scene_file = texts.scene;
+    job.render.scene_file = args.scene;
     job.render.settings = settings_for(Quality::preview);
-    for (const std::string& assignment : texts.settings) apply_setting(job.render.settings, assignment);
-    job.render.camera = texts.camera, job.render.shutter = Shutter{}; // measured without motion blur
+    for (const std::string& assignment : args.settings) apply_setting(job.render.settings, assignment);
+    job.render.camera = args.camera, job.render.shutter = Shutter{}; // measured without motion blur
     job.render.isa = isa_name();
-    job.modes = asked_modes("--modes", texts.modes);
-    job.directory = texts.output;
-    if (texts.quick) job.reference.noise = 0.05, job.reference.seconds = 4, job.runs = 2, job.longest = 0.7;
-    if (!texts.noise.empty()) job.reference.noise = number_option("--reference-noise", texts.noise, 1e-5, 1);
-    if (!texts.samples.empty())
-        job.reference.count = static_cast<int>(integer_option("--samples", texts.samples, 4, 4096) + 1) / 2 * 2;
-    if (!texts.runs.empty()) job.runs = static_cast<int>(integer_option("--runs", texts.runs, 1, 100));
-    if (!texts.longest.empty()) job.longest = number_option("--longest", texts.longest, 1e-3, 1e6);
-    if (!texts.reference_seconds.empty())
-        job.reference.seconds = number_option("--reference-seconds", texts.reference_seconds, 0.1, 1e6);
-    if (!texts.resolution.empty()) job.render.resolution = resolution_option("--res", texts.resolution);
-    if (!texts.frame.empty()) job.frame = frame_option(texts.frame);
+    job.modes = modes_option("--modes", args.modes);
+    job.directory = args.output;
+    if (args.quick) job.reference.noise = 0.05, job.reference.seconds = 4, job.runs = 2, job.longest = 0.7;
+    if (!args.noise.empty()) job.reference.noise = number_option("--reference-noise", args.noise, 1e-5, 1);
+    if (!args.samples.empty())
+        job.reference.count = static_cast<int>(integer_option("--samples", args.samples, 4, 4096) + 1) / 2 * 2;
+    if (!args.runs.empty()) job.runs = static_cast<int>(integer_option("--runs", args.runs, 1, 100));
+    if (!args.longest.empty()) job.longest = number_option("--longest", args.longest, 1e-3, 1e6);
+    if (!args.reference_seconds.empty())
+        job.reference.seconds = number_option("--reference-seconds", args.reference_seconds, 0.1, 1e6);
+    if (!args.resolution.empty()) job.render.resolution = resolution_option("--res", args.resolution);
+    if (!args.frame.empty()) job.frame = frame_option(args.frame);
     return job;
 }
 
 // Checks every file that will be written, so that an unwritable one is reported before the work.
-void check_places(const ChartJob& job, OutputPlaces& places) {
+void check_places(const ChartJob& job, OutputPaths& places) {
     for (const char* name : {"chart.csv", "chart.json", "chart.html", "chart.svg", "chart_fog.svg",
                              "chart_sequence.svg", "points/a.json", "pictures/a.png", "reference/a.exr"})
         places.check(job.directory / name);
@@ -73,7 +73,7 @@ void write_reports(const Chart& chart) {
 void say_end(const Chart& chart) {
     std::string line = count_text(chart.points.size(), "point") + " in " + seconds_text(chart.seconds);
     if (chart.kept > 0) line += formatted(", %d kept from an earlier run", chart.kept);
-    if (!chart.left_out.empty()) line += formatted(", %zu skipped", chart.left_out.size());
+    if (!chart.skipped.empty()) line += formatted(", %zu skipped", chart.skipped.size());
     say(line);
     if (was_loaded(chart))
         say(formatted("note: other processes were running (load %.1f on %d threads), so times are too long",
@@ -81,16 +81,16 @@ void say_end(const Chart& chart) {
     say("to view: " + printable((chart.job.directory / "chart.html").string()));
 }
 
-int run_chart(const Options& texts, const Globals& globals) {
-    ChartJob job = make_job(texts);
+int run_chart(const Options& args, const Globals& globals) {
+    ChartJob job = make_job(args);
     set_stop_remark("; measured points are kept, the same command continues");
-    OutputPlaces places;
+    OutputPaths places;
     check_places(job, places);
     const Scene scene = load_scene(job.render.scene_file);
     if (scene.media.empty()) refuse(scene.file.string(), "has no fog to chart");
     find_camera(scene, job.render.camera);
-    if (texts.frame.empty()) job.frame = scene.first_frame;
-    if (texts.resolution.empty()) job.render.resolution = chart_size(scene, texts.quick);
+    if (args.frame.empty()) job.frame = scene.first_frame;
+    if (args.resolution.empty()) job.render.resolution = chart_size(scene, args.quick);
 
     Progress progress(globals.progress, "chart", 1, globals.json);
     ChartControl control{&cancel_flag(), [&](double done) { progress.set(done); }, {}};
@@ -111,32 +111,32 @@ int run_chart(const Options& texts, const Globals& globals) {
 
 Run add_chart(const Command& program) {
     const Command command = program.command("chart", "every mode's error against its time on a scene");
-    auto texts = std::make_shared<Options>();
-    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
+    auto args = std::make_shared<Options>();
+    command.option("SCENE", args->scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
         .required();
     command
-        .option("-o,--output", texts->output, "directory for chart.csv, chart.json, chart.html, drawings and\nimages",
+        .option("-o,--output", args->output, "directory for chart.csv, chart.json, chart.html, drawings and\nimages",
                 "DIR")
         .required();
-    command.option("--modes", texts->modes, "modes by name, comma-separated (default: all)", "NAMES");
-    command.flag("--quick", texts->quick, "small images, without the settings that take longest: under a minute");
-    command.option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
-    command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
-    command.option("--res", texts->resolution,
+    command.option("--modes", args->modes, "modes by name, comma-separated (default: all)", "NAMES");
+    command.flag("--quick", args->quick, "small images, without the settings that take longest: under a minute");
+    command.option("--camera", args->camera, "camera by name (default: the scene's)", "NAME");
+    command.option("--frame", args->frame, "which frame of the scene (default: its first)", "N");
+    command.option("--res", args->resolution,
                    "image size in pixels (default: the scene's shape, 320 wide;\n128 with --quick)", "WxH");
-    command.option("--reference-noise", texts->noise,
+    command.option("--reference-noise", args->noise,
                    "render the reference until its noise is this share of the mean\n(default: 0.02; 0.05 with --quick)",
                    "SHARE");
-    command.option("--reference-seconds", texts->reference_seconds,
+    command.option("--reference-seconds", args->reference_seconds,
                    "time limit for each of its two halves (default: 60; 4 with\n--quick)", "SECONDS");
-    command.option("--samples", texts->samples, "rays per pixel of the reference instead, 4 or more", "N");
-    command.option("--runs", texts->runs,
-                   "how many times each image is rendered, at least (default: 3; 2 with --quick)", "N");
-    command.option("--longest", texts->longest,
+    command.option("--samples", args->samples, "rays per pixel of the reference instead, 4 or more", "N");
+    command.option("--runs", args->runs, "how many times each image is rendered, at least (default: 3; 2 with --quick)",
+                   "N");
+    command.option("--longest", args->longest,
                    "skip settings whose image would take more seconds than this\n"
                    "(default: 60; 0.7 with --quick)",
                    "SECONDS");
-    command.options("--set", texts->settings,
+    command.options("--set", args->settings,
                     "one setting for all modes, for instance terms.ambient=off; may be\n"
                     "repeated. Those that trade speed for accuracy are set by the chart itself",
                     "NAME=VALUE");
@@ -145,6 +145,6 @@ Run add_chart(const Command& program) {
                    "  tyndall chart scenes/window.json -o out/chart\n"
                    "Each mode is rendered at six settings or more, each several times, and compared with exact single\n"
                    "scattering. Points are saved as they are measured: a stopped run resumes where it was.");
-    return [texts](const Globals& globals) { return run_chart(*texts, globals); };
+    return [args](const Globals& globals) { return run_chart(*args, globals); };
 }
 }

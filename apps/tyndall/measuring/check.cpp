@@ -89,9 +89,9 @@ void check_media(const std::string& file, const Scene& scene, Problems& problems
         for (const auto* grid : {&medium.albedo_grid, &medium.emission_grid, &medium.temperature, &medium.flame}) {
             if (!*grid) continue;
             check_frames(file, scene, (*grid)->sequence, problems, [&](const auto& volume, VdbReadReport& report) {
-                const bool share = grid == &medium.albedo_grid;
+                const bool is_albedo = grid == &medium.albedo_grid;
                 const ColorVolume color =
-                    read_color_vdb(volume, (*grid)->grids, (*grid)->map, share ? 1 : infinity, &report);
+                    read_color_vdb(volume, (*grid)->grids, (*grid)->map, is_albedo ? 1 : infinity, &report);
                 within(volume.string(), [&] {
                     for (const SparseVolume& channel : color.channels) check_bricks(channel);
                 });
@@ -197,9 +197,9 @@ struct Options {
     std::string frames;
 };
 
-int run_check(const Options& texts, const Globals& globals) {
-    const std::vector<std::string>& files = texts.files;
-    const std::vector<int> frames = texts.frames.empty() ? std::vector<int>() : parse_frames(texts.frames);
+int run_check(const Options& args, const Globals& globals) {
+    const std::vector<std::string>& files = args.files;
+    const std::vector<int> frames = args.frames.empty() ? std::vector<int>() : parse_frames(args.frames);
     if (!frames.empty() && !std::ranges::any_of(files, is_sequence))
         fail(ExitCode::usage, "--frames", "none of the files is a sequence, like x.####.exr");
     Problems problems;
@@ -228,12 +228,12 @@ int run_check(const Options& texts, const Globals& globals) {
 
 Run add_check(const Command& program) {
     const Command command = program.command("check", "find problems in scenes, recipes, volumes and images");
-    auto texts = std::make_shared<Options>();
+    auto args = std::make_shared<Options>();
     command
-        .options("FILES", texts->files,
-                 "files (.json .gltf .glb .vdb .nvdb .exr); a name with #### is a whole sequence", "")
+        .options("FILES", args->files, "files (.json .gltf .glb .vdb .nvdb .exr); a name with #### is a whole sequence",
+                 "")
         .required();
-    command.option("--frames", texts->frames,
+    command.option("--frames", args->frames,
                    "frames a sequence should have (default: from the first found to the last)", "RANGE");
     command.footer("Example: before a long render\n"
                    "  tyndall check scenes/window.json 'fog/dust.####.vdb'\n"
@@ -242,6 +242,6 @@ Run add_check(const Command& program) {
                    "Each problem is one line on stdout: FILE: FIELD: TEXT. Volumes and images are read whole.\n"
                    "Exit code 0: no problem; 1: problems, warnings too; 4: the only problems are files that are\n"
                    "missing or cannot be read.");
-    return [texts](const Globals& globals) { return run_check(*texts, globals); };
+    return [args](const Globals& globals) { return run_check(*args, globals); };
 }
 }

@@ -36,36 +36,36 @@ struct Job {
     bool sequence = false;
 };
 
-std::vector<Pair> make_pairs(const Options& texts) {
-    const bool sequence = has_frame_token(texts.test);
-    if (!sequence && has_frame_token(texts.reference))
-        fail(ExitCode::usage, texts.test,
+std::vector<Pair> make_pairs(const Options& args) {
+    const bool sequence = has_frame_token(args.test);
+    if (!sequence && has_frame_token(args.reference))
+        fail(ExitCode::usage, args.test,
              "this is one image, but the reference is a sequence: give one reference image");
-    if (!sequence && !texts.frames.empty())
+    if (!sequence && !args.frames.empty())
         fail(ExitCode::usage, "--frames",
-             "is for sequences, like a.####.exr; " + printable(texts.test) + " is one file");
-    if (!sequence) return {{0, texts.test, texts.reference}};
-    if (texts.frames.empty()) fail(ExitCode::usage, texts.test, "a sequence needs --frames, like --frames 1-24");
+             "is for sequences, like a.####.exr; " + printable(args.test) + " is one file");
+    if (!sequence) return {{0, args.test, args.reference}};
+    if (args.frames.empty()) fail(ExitCode::usage, args.test, "a sequence needs --frames, like --frames 1-24");
     std::vector<Pair> pairs;
-    for (const int frame : parse_frames(texts.frames))
-        pairs.push_back({frame, frame_name(texts.test, frame), frame_name(texts.reference, frame)});
+    for (const int frame : parse_frames(args.frames))
+        pairs.push_back({frame, frame_name(args.test, frame), frame_name(args.reference, frame)});
     return pairs;
 }
 
-Job make_job(const Options& texts, OutputPlaces& places) {
+Job make_job(const Options& args, OutputPaths& places) {
     Job job;
-    job.pairs = make_pairs(texts);
-    job.sequence = has_frame_token(texts.test);
-    for (const std::string& text : texts.fail_above) {
+    job.pairs = make_pairs(args);
+    job.sequence = has_frame_token(args.test);
+    for (const std::string& text : args.fail_above) {
         job.bounds.push_back(parsed_bound(text));
         if (job.bounds.back().metric->name == "flicker" && job.pairs.size() < 2)
             fail(ExitCode::usage, "--fail-above", "flicker needs a sequence of at least two frames");
     }
-    if (!texts.pixels_per_degree.empty())
-        job.pixels_per_degree = number_option("--ppd", texts.pixels_per_degree, 1, 1000);
-    if (!texts.map.empty() && texts.heatmap.empty()) fail(ExitCode::usage, "--map", "needs --heatmap FILE.png");
-    if (!texts.map.empty()) job.map = choice_among("--map", texts.map, {"error", "flip"});
-    job.heatmap = texts.heatmap;
+    if (!args.pixels_per_degree.empty())
+        job.pixels_per_degree = number_option("--ppd", args.pixels_per_degree, 1, 1000);
+    if (!args.map.empty() && args.heatmap.empty()) fail(ExitCode::usage, "--map", "needs --heatmap FILE.png");
+    if (!args.map.empty()) job.map = choice_among("--map", args.map, {"error", "flip"});
+    job.heatmap = args.heatmap;
     if (job.heatmap.empty()) return job;
 
     check_pattern(job.heatmap, ".png", job.pairs.size() > 1, "--heatmap");
@@ -78,13 +78,13 @@ Job make_job(const Options& texts, OutputPlaces& places) {
 // Reads references and keeps the last one in memory, since it may serve all frames.
 class References {
 public:
-    const Picture& read(const std::string& file) {
-        if (!last_ || last_->file != file) last_ = read_picture(file);
+    const ExrColors& read(const std::string& file) {
+        if (!last_ || last_->file != file) last_ = read_exr_colors(file);
         return *last_;
     }
 
 private:
-    std::optional<Picture> last_;
+    std::optional<ExrColors> last_;
 };
 
 // The same viewing conditions for all frames.
@@ -112,8 +112,8 @@ CompareResult compare_all(const Job& job, Progress* progress) {
     Flicker flicker;
     for (const Pair& pair : job.pairs) {
         stop_if_cancelled();
-        const Picture test = read_picture(pair.test);
-        const Picture& reference = references.read(pair.reference);
+        const ExrColors test = read_exr_colors(pair.test);
+        const ExrColors& reference = references.read(pair.reference);
         check_same_frame(test, reference);
         if (!result.frames.empty() && test.beauty.size != result.size)
             refuse(pair.test, "its size differs from the earlier frames");
@@ -157,15 +157,15 @@ void say_scale(const Job& job) {
         printable(job.heatmap));
 }
 
-int run_compare(const Options& texts, const Globals& globals) {
-    OutputPlaces places;
-    const Job job = make_job(texts, places);
+int run_compare(const Options& args, const Globals& globals) {
+    OutputPaths places;
+    const Job job = make_job(args, places);
     std::optional<Progress> progress;
     if (job.pairs.size() > 1)
         progress.emplace(globals.progress, "compare", static_cast<double>(job.pairs.size()), true);
     CompareResult result = compare_all(job, progress ? &*progress : nullptr);
     if (progress) progress->finish();
-    result.test = texts.test, result.reference = texts.reference;
+    result.test = args.test, result.reference = args.reference;
 
     const std::vector<Exceeded> exceeded = find_exceeded(result, job.bounds);
     print_report(globals.json ? compare_json(result, exceeded) : compare_text(result));
@@ -177,7 +177,7 @@ int run_compare(const Options& texts, const Globals& globals) {
 
     const uint64_t bad = result.overall.non_finite();
     if (bad == 0) return 0;
-    fail(ExitCode::non_finite, printable(texts.test) + " against " + printable(texts.reference),
+    fail(ExitCode::non_finite, printable(args.test) + " against " + printable(args.reference),
          count_text(bad, "pixel") + " of images and layers are not finite; the rest was compared");
 }
 
@@ -190,24 +190,24 @@ std::string metric_help() {
 
 Run add_compare(const Command& program) {
     const Command command = program.command("compare", "measure how far images are from a reference");
-    auto texts = std::make_shared<Options>();
-    command.option("A.exr", texts->test, "the image, or a sequence: a.####.exr", "").required();
-    command.option("B.exr", texts->reference, "the reference: what A should look like; a sequence or one file", "")
+    auto args = std::make_shared<Options>();
+    command.option("A.exr", args->test, "the image, or a sequence: a.####.exr", "").required();
+    command.option("B.exr", args->reference, "the reference: what A should look like; a sequence or one file", "")
         .required();
-    command.option("--frames", texts->frames, "frames of a sequence: 1-24, 1-48x2, 1,5,9", "RANGE");
-    command.options("--fail-above", texts->fail_above,
+    command.option("--frames", args->frames, "frames of a sequence: 1-24, 1-48x2, 1,5,9", "RANGE");
+    command.options("--fail-above", args->fail_above,
                     "exit with code 1 when METRIC (of all frames together) is larger than\n"
                     "VALUE; may be repeated",
                     "METRIC=VALUE");
-    command.option("--heatmap", texts->heatmap,
+    command.option("--heatmap", args->heatmap,
                    "an image that shows where the differences are; the strip below it is the\n"
                    "scale",
                    "FILE.png");
-    command.option("--map", texts->map,
+    command.option("--map", args->map,
                    "what the heat map shows: error (default), 0.001 to 10 times the\n"
                    "reference's mean on a logarithmic scale; or flip, 0 to 1",
                    "WHAT");
-    command.option("--ppd", texts->pixels_per_degree, "pixels per degree of visual angle, for FLIP (default: 67)", "N");
+    command.option("--ppd", args->pixels_per_degree, "pixels per degree of visual angle, for FLIP (default: 67)", "N");
     command.footer(
         "Example: is the quick render within 5 % of the good one?\n"
         "  tyndall compare quick.exr good.exr --heatmap where.png --fail-above rmse_rel=0.05\n"
@@ -219,6 +219,6 @@ Run add_compare(const Command& program) {
         metric_help() +
         "Exit code 0: compared; 1: a metric is above its limit (or undefined); 3: the images cannot be\n"
         "compared; 4: missing or unreadable; 6: compared, but some pixels are not finite numbers.");
-    return [texts](const Globals& globals) { return run_compare(*texts, globals); };
+    return [args](const Globals& globals) { return run_compare(*args, globals); };
 }
 }

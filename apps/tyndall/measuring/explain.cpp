@@ -41,45 +41,45 @@ void check_inside(ivec2 pixel, ivec2 size) {
                        pixel.x, pixel.y, size.x, size.y, size.x - 1, size.y - 1));
 }
 
-RenderRequest make_request(const Options& texts) {
+RenderRequest make_request(const Options& args) {
     RenderRequest request;
-    request.scene_file = texts.scene;
-    request.quality = quality_named(texts.quality);
+    request.scene_file = args.scene;
+    request.quality = quality_named(args.quality);
     request.settings = settings_for(request.quality);
-    for (const std::string& assignment : texts.settings) apply_setting(request.settings, assignment);
-    request.camera = texts.camera, request.shutter = Shutter{}; // traced at one time, without motion blur
-    if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);
-    if (!texts.frame.empty()) request.frames = {frame_option(texts.frame)};
+    for (const std::string& assignment : args.settings) apply_setting(request.settings, assignment);
+    request.camera = args.camera, request.shutter = Shutter{}; // traced at one time, without motion blur
+    if (!args.resolution.empty()) request.resolution = resolution_option("--res", args.resolution);
+    if (!args.frame.empty()) request.frames = {frame_option(args.frame)};
     return request;
 }
 
-void check_outputs(const Options& texts, OutputPlaces& places) {
-    if (!texts.svg.empty())
-        check_pattern(texts.svg, ".svg", false, "--svg"), places.check(std::filesystem::path(texts.svg));
-    if (!texts.csv.empty())
-        check_pattern(texts.csv, ".csv", false, "--csv"), places.check(std::filesystem::path(texts.csv));
+void check_outputs(const Options& args, OutputPaths& places) {
+    if (!args.svg.empty())
+        check_pattern(args.svg, ".svg", false, "--svg"), places.check(std::filesystem::path(args.svg));
+    if (!args.csv.empty())
+        check_pattern(args.csv, ".csv", false, "--csv"), places.check(std::filesystem::path(args.csv));
 }
 
 // Throws Error when an output would overwrite one of the scene's own files.
-void keep_inputs(const Options& texts, const Scene& scene) {
-    for (const std::string& output : {texts.svg, texts.csv})
+void keep_inputs(const Options& args, const Scene& scene) {
+    for (const std::string& output : {args.svg, args.csv})
         for (const InputFile& input : scene.inputs)
             if (!output.empty() &&
                 std::filesystem::weakly_canonical(output) == std::filesystem::weakly_canonical(input.path))
                 fail(ExitCode::usage, output, "this file belongs to the scene and would be overwritten");
 }
 
-int run_explain(const Options& texts, const Globals& globals) {
-    const ivec2 pixel = pixel_option(texts.pixel);
-    RenderRequest request = make_request(texts);
+int run_explain(const Options& args, const Globals& globals) {
+    const ivec2 pixel = pixel_option(args.pixel);
+    RenderRequest request = make_request(args);
     ExplainOptions options;
-    if (texts.modes != "none") options.modes = asked_modes("--modes", texts.modes);
+    if (args.modes != "none") options.modes = modes_option("--modes", args.modes);
     if (request.resolution.x > 0) check_inside(pixel, request.resolution);
-    OutputPlaces places;
-    check_outputs(texts, places);
+    OutputPaths places;
+    check_outputs(args, places);
 
-    const Scene scene = load_scene(texts.scene);
-    keep_inputs(texts, scene);
+    const Scene scene = load_scene(args.scene);
+    keep_inputs(args, scene);
     if (request.frames.empty()) request.frames = {scene.first_frame};
     const int frame = request.frames[0];
     find_camera(scene, request.camera);
@@ -97,46 +97,46 @@ int run_explain(const Options& texts, const Globals& globals) {
         for (const std::string& line : enclosed_lights(snapshot)) say("warning: " + printable(line, 460));
     options.cancel = &cancel_flag();
     options.progress = [&](double done) { progress.set(done); };
-    const RayStory story = explain_ray(view, snapshot, request.settings, pixel, options);
+    const RayReport report = explain_ray(view, snapshot, request.settings, pixel, options);
     stop_if_cancelled();
     progress.finish();
 
-    const StoryTitle title{std::filesystem::path(texts.scene).filename().string(), view.camera.name,
-                           std::string(name_of(request.quality)), frame};
-    if (!texts.svg.empty()) write_file_atomically(texts.svg, explain_svg(story, title));
-    if (!texts.csv.empty()) write_file_atomically(texts.csv, explain_csv(story));
-    print_report(globals.json ? explain_json(story, title) : explain_text(story, title));
-    const auto finite = [](const Answer& answer) { return answer.finite; };
-    if (story.reference.finite && std::ranges::all_of(story.answers, finite)) return 0;
-    fail(ExitCode::non_finite, texts.scene, "a result is not a finite number; the report shows which");
+    const ReportTitle title{std::filesystem::path(args.scene).filename().string(), view.camera.name,
+                            std::string(name_of(request.quality)), frame};
+    if (!args.svg.empty()) write_file_atomically(args.svg, explain_svg(report, title));
+    if (!args.csv.empty()) write_file_atomically(args.csv, explain_csv(report));
+    print_report(globals.json ? explain_json(report, title) : explain_text(report, title));
+    const auto finite = [](const ModeResult& answer) { return answer.finite; };
+    if (report.reference.finite && std::ranges::all_of(report.results, finite)) return 0;
+    fail(ExitCode::non_finite, args.scene, "a result is not a finite number; the report shows which");
 }
 }
 
 Run add_explain(const Command& program) {
     const Command command = program.command("explain", "show what happens along one camera ray");
-    auto texts = std::make_shared<Options>();
-    command.option("SCENE", texts->scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
+    auto args = std::make_shared<Options>();
+    command.option("SCENE", args->scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
         .required();
-    command.option("--pixel", texts->pixel, "the pixel whose center the ray goes through; 0,0 is the upper left", "X,Y")
+    command.option("--pixel", args->pixel, "the pixel whose center the ray goes through; 0,0 is the upper left", "X,Y")
         .required();
-    command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
-    command.option("--camera", texts->camera, "camera by name (default: the scene's)", "NAME");
-    command.option("--res", texts->resolution, "image size that --pixel refers to (default: the scene's)", "WxH");
-    command.option("--quality", texts->quality, "quality of the modes: draft, preview (default), final or reference",
+    command.option("--frame", args->frame, "which frame of the scene (default: its first)", "N");
+    command.option("--camera", args->camera, "camera by name (default: the scene's)", "NAME");
+    command.option("--res", args->resolution, "image size that --pixel refers to (default: the scene's)", "WxH");
+    command.option("--quality", args->quality, "quality of the modes: draft, preview (default), final or reference",
                    "NAME");
-    command.options("--set", texts->settings,
+    command.options("--set", args->settings,
                     "one setting by name, like froxel.tile=4; may be repeated\n"
                     "(tyndall modes lists them)",
                     "NAME=VALUE");
-    command.option("--modes", texts->modes, "modes to compare, comma-separated (default: all), or none", "NAMES");
-    command.option("--svg", texts->svg, "also write a drawing of the ray", "FILE.svg");
-    command.option("--csv", texts->csv, "also write a table of every step along the ray", "FILE.csv");
+    command.option("--modes", args->modes, "modes to compare, comma-separated (default: all), or none", "NAMES");
+    command.option("--svg", args->svg, "also write a drawing of the ray", "FILE.svg");
+    command.option("--csv", args->csv, "also write a table of every step along the ray", "FILE.csv");
     command.footer(
         "Example: why is this pixel of the window so bright, and which modes get it right?\n"
         "  tyndall explain scenes/window.json --pixel 320,180 --svg ray.svg\n"
         "The report: what the ray hits, how much fog lies on it, where each light reaches it and what blocks\n"
         "the light, how much of it arrives at the camera; then the fog light of every mode, at the pixel's center\n"
         "with one sample, beside exact single scattering. --json has all of it.");
-    return [texts](const Globals& globals) { return run_explain(*texts, globals); };
+    return [args](const Globals& globals) { return run_explain(*args, globals); };
 }
 }

@@ -3,9 +3,9 @@
 
 namespace tyndall {
 namespace {
-Json world_place(const RayStory& story) {
-    const dvec3 place = dvec3(story.origin) + story.world_origin;
-    if (story.world_origin == dvec3(0)) return story.origin;
+Json world_place(const RayReport& report) {
+    const dvec3 place = dvec3(report.origin) + report.world_origin;
+    if (report.world_origin == dvec3(0)) return report.origin;
     return std::vector{place.x, place.y, place.z};
 }
 
@@ -52,7 +52,7 @@ Json step_json(const RayStep& step) {
                         {"glow", step.glow}});
 }
 
-Json answer_json(const Answer& answer, const Answer* reference) {
+Json answer_json(const ModeResult& answer, const ModeResult* reference) {
     Json json = json_object({{"mode", answer.mode},
                              {"accuracy", name_of(answer.accuracy)},
                              {"fog", answer.inscatter},
@@ -64,38 +64,38 @@ Json answer_json(const Answer& answer, const Answer* reference) {
                              {"finite", answer.finite}});
     if (reference) json.members.emplace_back("difference", difference(answer, *reference));
     if (answer.standard_error) json.members.emplace_back("standard_error", *answer.standard_error);
-    if (answer.picture.x > 0) json.members.emplace_back("picture", answer.picture);
+    if (answer.image_size.x > 0) json.members.emplace_back("picture", answer.image_size);
     if (!answer.remark.empty()) json.members.emplace_back("remark", answer.remark);
     if (reference) json.members.emplace_back("limitations", json_of(answer.limitations));
     return json;
 }
 }
 
-std::string explain_json(const RayStory& story, const StoryTitle& title) {
+std::string explain_json(const RayReport& report, const ReportTitle& title) {
     const auto medium_json = [](const MediumOnRay& medium) {
         return json_object({{"name", medium.name}, {"depth", medium.depth}});
     };
-    const auto mode_json = [&](const Answer& answer) { return answer_json(answer, &story.reference); };
+    const auto mode_json = [&](const ModeResult& answer) { return answer_json(answer, &report.reference); };
     return json_line({{"version", TYNDALL_VERSION},
                       {"scene", title.scene},
                       {"frame", title.frame},
                       {"camera", title.camera},
                       {"quality", title.quality},
-                      {"pixel", story.pixel},
-                      {"size", story.size},
-                      {"origin", world_place(story)},
-                      {"direction", story.direction},
-                      {"end", story.end},
-                      {"hits", story.hits},
-                      {"surfaces", json_list(story.surfaces, surface_json)},
-                      {"background", story.background},
-                      {"background_share", story.background_share},
-                      {"media", json_list(story.media, medium_json)},
-                      {"depth", story.depth},
-                      {"glow", story.glow},
-                      {"steps", json_list(story.steps, step_json)},
-                      {"lights", json_list(story.lights, light_json)},
-                      {"reference", answer_json(story.reference, nullptr)},
-                      {"modes", json_list(story.answers, mode_json)}});
+                      {"pixel", report.pixel},
+                      {"size", report.size},
+                      {"origin", world_place(report)},
+                      {"direction", report.direction},
+                      {"end", report.end},
+                      {"hits", report.hits},
+                      {"surfaces", json_list(report.surfaces, surface_json)},
+                      {"background", report.background},
+                      {"background_share", report.background_share},
+                      {"media", json_list(report.media, medium_json)},
+                      {"depth", report.depth},
+                      {"glow", report.glow},
+                      {"steps", json_list(report.steps, step_json)},
+                      {"lights", json_list(report.lights, light_json)},
+                      {"reference", answer_json(report.reference, nullptr)},
+                      {"modes", json_list(report.results, mode_json)}});
 }
 }

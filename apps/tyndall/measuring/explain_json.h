@@ -3,5 +3,5 @@
 #include "measure/explain/report.h"
 
 namespace tyndall {
-std::string explain_json(const RayStory& story, const StoryTitle& title);
+std::string explain_json(const RayReport& report, const ReportTitle& title);
 }

@@ -64,10 +64,10 @@ void write_files(const std::filesystem::path& directory, const StressReport& rep
 }
 
 // Runs the cases one by one; with an output folder, updates the reports there after each.
-StressReport run_cases(std::span<const StressCase* const> cases, std::span<const Mode> chosen, const Options& texts,
+StressReport run_cases(std::span<const StressCase* const> cases, std::span<const Mode> chosen, const Options& args,
                        Progress& progress) {
-    const std::filesystem::path directory = texts.output;
-    const EarlierStress earlier = texts.resume ? earlier_stress(directory / "stress.json") : EarlierStress();
+    const std::filesystem::path directory = args.output;
+    const EarlierStress earlier = args.resume ? earlier_stress(directory / "stress.json") : EarlierStress();
     const double start = steady_seconds();
     StressReport report;
     report.asked = cases.size();
@@ -79,30 +79,30 @@ StressReport run_cases(std::span<const StressCase* const> cases, std::span<const
         report.results.insert(report.results.end(), results.begin(), results.end());
         report.modes = columns(report.results);
         report.seconds = steady_seconds() - start;
-        if (!texts.output.empty() && (!kept || i + 1 == cases.size())) write_files(directory, report);
+        if (!args.output.empty() && (!kept || i + 1 == cases.size())) write_files(directory, report);
         progress.set(static_cast<double>(i + 1) / static_cast<double>(cases.size()));
     }
     return report;
 }
 
-int run(const Options& texts, const Globals& globals) {
-    const std::vector<Mode> chosen = chosen_modes(texts.modes);
-    const std::vector<const StressCase*> cases = cases_for(chosen, chosen_cases(texts.cases));
+int run(const Options& args, const Globals& globals) {
+    const std::vector<Mode> chosen = chosen_modes(args.modes);
+    const std::vector<const StressCase*> cases = cases_for(chosen, chosen_cases(args.cases));
     if (cases.empty()) fail(ExitCode::usage, "--modes", "none of these modes takes part in the chosen cases");
-    if (texts.list) {
+    if (args.list) {
         print_report(stress_list(cases));
         return 0;
     }
-    if (texts.resume && texts.output.empty()) fail(ExitCode::usage, "--resume", "needs --output");
-    OutputPlaces places;
-    if (!texts.output.empty()) {
+    if (args.resume && args.output.empty()) fail(ExitCode::usage, "--resume", "needs --output");
+    OutputPaths places;
+    if (!args.output.empty()) {
         set_stop_remark("; finished cases are kept, --resume continues");
         for (const char* name : {"stress.txt", "stress.json", "stress.html"})
-            places.check(std::filesystem::path(texts.output) / name);
+            places.check(std::filesystem::path(args.output) / name);
     }
 
     Progress progress(globals.progress, "stress", 1, globals.json);
-    const StressReport report = run_cases(cases, chosen, texts, progress);
+    const StressReport report = run_cases(cases, chosen, args, progress);
     progress.finish();
     print_report(globals.json ? stress_json(report) : stress_text(report));
     return static_cast<int>(report.count(Verdict::fails) ? ExitCode::differs : ExitCode::ok);
@@ -111,20 +111,20 @@ int run(const Options& texts, const Globals& globals) {
 
 Run add_stress(const Command& program) {
     const Command command = program.command("stress", "test where each mode fails, and whether it warns");
-    auto texts = std::make_shared<Options>();
-    command.option("--modes", texts->modes, "which modes, comma-separated (default: all)", "NAMES");
-    command.option("--cases", texts->cases,
+    auto args = std::make_shared<Options>();
+    command.option("--modes", args->modes, "which modes, comma-separated (default: all)", "NAMES");
+    command.option("--cases", args->cases,
                    "cases with one of these in their name or group, comma-separated\n(default: all)", "PARTS");
-    command.option("-o,--output", texts->output,
+    command.option("-o,--output", args->output,
                    "folder for stress.txt, stress.json and stress.html, updated case by case", "DIR");
-    command.flag("--resume", texts->resume, "keep the cases that are already in stress.json in the output folder");
-    command.flag("--list", texts->list, "only list the cases and what they sweep");
+    command.flag("--resume", args->resume, "keep the cases that are already in stress.json in the output folder");
+    command.flag("--list", args->list, "only list the cases and what they sweep");
     command.footer("Examples: everything, in some minutes; then one mode's shadows\n"
                    "  tyndall stress -o out/stress\n"
                    "  tyndall stress --modes shadow-map --cases shadows\n"
                    "Each case is a tiny scene in which one condition goes from mild to hard. A mode holds, degrades\n"
                    "from some value on with a warning beforehand (tyndall render gives it too), or fails silently.\n"
                    "Exit code 0: none fails silently; 1: one does.");
-    return [texts](const Globals& globals) { return run(*texts, globals); };
+    return [args](const Globals& globals) { return run(*args, globals); };
 }
 }

@@ -43,38 +43,38 @@ std::string checks_json(const std::vector<Check>& checks, size_t off) {
     return json_line({{"version", TYNDALL_VERSION}, {"off", off}, {"checks", json_list(checks, check_json)}});
 }
 
-SceneProof proof_of(const Options& texts) {
-    SceneProof proof;
-    if (!texts.resolution.empty()) proof.size = resolution_option("--res", texts.resolution);
-    if (!texts.samples.empty())
-        proof.samples = static_cast<int>(integer_option("--samples", texts.samples, 64, 65536) + 63) / 64 * 64;
-    if (!texts.seed.empty()) proof.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
-    if (!texts.frame.empty()) proof.frame = frame_option(texts.frame);
-    proof.camera = texts.camera;
-    return proof;
+VerifyOptions proof_of(const Options& args) {
+    VerifyOptions options;
+    if (!args.resolution.empty()) options.size = resolution_option("--res", args.resolution);
+    if (!args.samples.empty())
+        options.samples = static_cast<int>(integer_option("--samples", args.samples, 64, 65536) + 63) / 64 * 64;
+    if (!args.seed.empty()) options.seed = static_cast<uint32_t>(integer_option("--seed", args.seed, 0, UINT32_MAX));
+    if (!args.frame.empty()) options.frame = frame_option(args.frame);
+    options.camera = args.camera;
+    return options;
 }
 
-void refuse_scene_options(const Options& texts) {
-    const std::pair<const char*, const std::string*> options[] = {{"--frame", &texts.frame},
-                                                                  {"--camera", &texts.camera},
-                                                                  {"--res", &texts.resolution},
-                                                                  {"--samples", &texts.samples},
-                                                                  {"--seed", &texts.seed}};
+void refuse_scene_options(const Options& args) {
+    const std::pair<const char*, const std::string*> options[] = {{"--frame", &args.frame},
+                                                                  {"--camera", &args.camera},
+                                                                  {"--res", &args.resolution},
+                                                                  {"--samples", &args.samples},
+                                                                  {"--seed", &args.seed}};
     for (const auto& [name, text] : options)
         if (!text->empty()) fail(ExitCode::usage, name, "needs a scene: tyndall verify SCENE.json");
 }
 
-int run_verify(const Options& texts, const Globals& globals) {
-    SceneProof proof = proof_of(texts);
-    if (texts.scene.empty()) refuse_scene_options(texts);
+int run_verify(const Options& args, const Globals& globals) {
+    VerifyOptions options = proof_of(args);
+    if (args.scene.empty()) refuse_scene_options(args);
     std::optional<Scene> scene;
-    if (!texts.scene.empty()) scene = load_scene(texts.scene);
+    if (!args.scene.empty()) scene = load_scene(args.scene);
     if (scene && scene->media.empty()) refuse(scene->file.string(), "has no fog to verify");
-    if (scene && texts.frame.empty()) proof.frame = scene->first_frame;
+    if (scene && args.frame.empty()) options.frame = scene->first_frame;
 
     Progress progress(globals.progress, "verify", 1, globals.json);
     const VerifyControl control{&cancel_flag(), [&](double done) { progress.set(done); }};
-    const std::vector<Check> checks = scene ? verify_scene(*scene, proof, control) : verify_program(control);
+    const std::vector<Check> checks = scene ? verify_scene(*scene, options, control) : verify_program(control);
     stop_if_cancelled();
     progress.finish();
     size_t off = 0;
@@ -89,16 +89,16 @@ int run_verify(const Options& texts, const Globals& globals) {
 
 Run add_verify(const Command& program) {
     const Command command = program.command("verify", "check the correctness of the program, or of a scene's images");
-    auto texts = std::make_shared<Options>();
-    command.option("SCENE", texts->scene, "a scene to check on its own data (default: only the program)", "");
-    command.option("--frame", texts->frame, "which frame of the scene (default: its first)", "N");
-    command.option("--camera", texts->camera, "which camera (default: the scene's)", "NAME");
-    command.option("--res", texts->resolution, "size of the images compared (default: 160x90)", "WxH");
-    command.option("--samples", texts->samples,
+    auto args = std::make_shared<Options>();
+    command.option("SCENE", args->scene, "a scene to check on its own data (default: only the program)", "");
+    command.option("--frame", args->frame, "which frame of the scene (default: its first)", "N");
+    command.option("--camera", args->camera, "which camera (default: the scene's)", "NAME");
+    command.option("--res", args->resolution, "size of the images compared (default: 160x90)", "WxH");
+    command.option("--samples", args->samples,
                    "paths per pixel, rounded up to a multiple of 64 (default: 256);\n"
                    "more of them find smaller differences",
                    "N");
-    command.option("--seed", texts->seed, "other random numbers (default: 0)", "N");
+    command.option("--seed", args->seed, "other random numbers (default: 0)", "N");
     command.footer("Examples: this program in half a minute; then a scene\n"
                    "  tyndall verify\n"
                    "  tyndall verify scenes/window.json --res 320x180 --samples 1024\n"
@@ -106,6 +106,6 @@ Run add_verify(const Command& program) {
                    "same bits with any number of threads and for crops, units of length, lights that add up, the fog\n"
                    "in a white furnace, and the march against the path tracer's first order, tile by tile.\n"
                    "Exit code 0: all checks hold; 1: one failed.");
-    return [texts](const Globals& globals) { return run_verify(*texts, globals); };
+    return [args](const Globals& globals) { return run_verify(*args, globals); };
 }
 }

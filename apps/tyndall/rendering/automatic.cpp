@@ -32,7 +32,7 @@ const Mode* mode_before(const RenderRequest& request) {
 }
 }
 
-double usual_error(Quality quality) {
+double default_error(Quality quality) {
     constexpr double errors[] = {0.1, 0.05, 0.02, 0.005};
     return errors[static_cast<size_t>(quality)];
 }
@@ -52,7 +52,7 @@ RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const S
         return make_plan(candidates, view, first, request.settings, goal, control, share);
     };
     Plan plan = plan_with(before ? std::span(before, 1) : modes());
-    if (before && !plan.chosen.gets_there()) plan = plan_with(modes()); // the scene has changed since
+    if (before && !plan.chosen.reaches_goal()) plan = plan_with(modes()); // the scene has changed since
     progress.finish();
     RenderPlan result{plan.chosen.mode,
                       plan.settings,

@@ -10,7 +10,7 @@ struct Scene;
 inline constexpr std::string_view automatic = "auto";
 
 // The target error when only a quality is given.
-double usual_error(Quality quality);
+double default_error(Quality quality);
 
 // The plan of a request, measured on its first frame. With --resume, an existing first frame that was rendered to the
 // same goal keeps its mode. Prints the choice unless quiet.

@@ -42,9 +42,9 @@ Json term_json(const Term& term) {
 Json standing_json(const Standing& standing) {
     JsonMembers members{{"mode", standing.mode->name}, {"why", standing.why}};
     if (const auto& best = standing.best) {
-        const Measured& measured = best->choice.measured;
+        const Measurement& measured = best->choice.measured;
         members.emplace_back("candidate", std::string_view(best->choice.candidate.name));
-        members.emplace_back("gets_there", best->gets_there());
+        members.emplace_back("gets_there", best->reaches_goal());
         members.emplace_back("samples", best->samples);
         members.emplace_back("seconds", best->seconds);
         members.emplace_back("error", best->error);
@@ -105,7 +105,7 @@ PlannedSamples counted(const Scene& scene, const RenderRequest& request, const R
 PlannedError first_frame_error(const Scene& scene, const RenderRequest& request, const RenderPlan& plan) {
     const Snapshot snapshot = load_first_frame(scene, request).snapshot;
     const View view = view_of(scene, request, plan.settings, request.frames[0]);
-    return shared_error(*plan.mode, view, snapshot, plan.settings, {false, nullptr, &cancel_flag(), {}, {}});
+    return systematic_error(*plan.mode, view, snapshot, plan.settings, {false, nullptr, &cancel_flag(), {}, {}});
 }
 
 // Saves the plan as a file for tyndall render --plan.
@@ -152,21 +152,21 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
 }
 
 // Throws Error (usage) for options that would make a saved plan's images depend on anything but the plan.
-void check_saved(const Options& texts) {
-    if (!texts.frame.empty())
+void check_saved(const Options& args) {
+    if (!args.frame.empty())
         fail(ExitCode::usage, "--frame", "cannot be combined with --save, which measures the first of --frames");
-    if (!texts.render.time_budget.empty())
+    if (!args.render.time_budget.empty())
         fail(ExitCode::usage, "--time-budget", "a saved plan cannot depend on time: use --samples");
-    if (!texts.render.history.empty())
+    if (!args.render.history.empty())
         fail(ExitCode::usage, "--history", "planned frames are rendered independently, without earlier frames");
 }
 
-int groups_option(const Options& texts) {
-    const bool target = !texts.render.target_error.empty() || texts.render.mode == automatic;
-    const bool halves = std::ranges::count(comma_list(texts.render.aov), "halves") > 0;
+int groups_option(const Options& args) {
+    const bool target = !args.render.target_error.empty() || args.render.mode == automatic;
+    const bool halves = std::ranges::count(comma_list(args.render.aov), "halves") > 0;
     const int fewest = target || halves ? 2 : 1;
-    if (texts.groups.empty()) return target ? groups_for_target : halves ? fewest : usual_groups;
-    const int groups = static_cast<int>(integer_option("--groups", texts.groups, 1, max_groups));
+    if (args.groups.empty()) return target ? groups_for_target : halves ? fewest : default_groups;
+    const int groups = static_cast<int>(integer_option("--groups", args.groups, 1, max_groups));
     if (groups < fewest)
         fail(ExitCode::usage, "--groups",
              std::string(target ? "--target-error and --mode auto need" : "halves need") +
@@ -174,24 +174,24 @@ int groups_option(const Options& texts) {
     return groups;
 }
 
-int save_as_asked(const Options& texts, const Globals& globals) {
-    const Mode& mode = find_mode(texts.render.mode, "--mode");
-    const RenderRequest request = make_request(texts.render, mode);
-    const Scene scene = load_scene(request.scene_file, load_options(texts.render));
+int save_as_asked(const Options& args, const Globals& globals) {
+    const Mode& mode = find_mode(args.render.mode, "--mode");
+    const RenderRequest request = make_request(args.render, mode);
+    const Scene scene = load_scene(request.scene_file, load_options(args.render));
     find_camera(scene, request.camera);
-    return save(texts.save, scene, request, plan_as_asked(request), groups_option(texts), globals);
+    return save(args.save, scene, request, requested_plan(request), groups_option(args), globals);
 }
 
-int run_plan(const Options& texts, const Globals& globals) {
-    if (texts.render.mode != automatic && texts.save.empty())
+int run_plan(const Options& args, const Globals& globals) {
+    if (args.render.mode != automatic && args.save.empty())
         fail(ExitCode::usage, "--mode", "needs --save: otherwise the plan chooses the mode");
-    if (!texts.save.empty()) check_saved(texts);
-    if (texts.render.mode != automatic) return save_as_asked(texts, globals);
-    RenderRequest request = make_request(texts.render, main_mode());
-    const LoadOptions options = load_options(texts.render);
+    if (!args.save.empty()) check_saved(args);
+    if (args.render.mode != automatic) return save_as_asked(args, globals);
+    RenderRequest request = make_request(args.render, main_mode());
+    const LoadOptions options = load_options(args.render);
     const Scene scene = load_scene(request.scene_file, options);
     request.frames = {request.frames.empty() ? scene.first_frame : request.frames[0]};
-    if (!texts.frame.empty()) request.frames = {frame_option(texts.frame)};
+    if (!args.frame.empty()) request.frames = {frame_option(args.frame)};
     find_camera(scene, request.camera);
     if (scene.media.empty()) refuse(scene.file.string(), "has no fog to plan for");
     const Snapshot snapshot = load_first_frame(scene, request).snapshot;
@@ -202,13 +202,13 @@ int run_plan(const Options& texts, const Globals& globals) {
     const Plan plan = make_plan(modes(), view, snapshot, request.settings,
                                 {request.target_error, request.time_budget, request.quality, {}, {}}, control);
     progress.finish();
-    if (!texts.save.empty()) {
-        RenderRequest asked = make_request(texts.render, *plan.chosen.mode);
+    if (!args.save.empty()) {
+        RenderRequest asked = make_request(args.render, *plan.chosen.mode);
         asked.mode = plan.chosen.mode->name;
-        RenderPlan chosen = plan_as_asked(asked);
+        RenderPlan chosen = requested_plan(asked);
         chosen.settings = plan.settings, chosen.certificate = plan.certificate();
         chosen.choice = std::make_shared<const Choice>(plan.chosen.choice);
-        save(texts.save, scene, asked, chosen, groups_option(texts), globals);
+        save(args.save, scene, asked, chosen, groups_option(args), globals);
     }
     if (globals.json) {
         print_report(plan_json(plan, request));
@@ -217,19 +217,19 @@ int run_plan(const Options& texts, const Globals& globals) {
                                                      : formatted("lowest error in %g s", plan.goal.seconds);
         print_report(formatted("%s, frame %d, %dx%d: %s\n\n", printable(request.scene_file.string(), 200).c_str(),
                                request.frames[0], view.size.x, view.size.y, goal.c_str()) +
-                     plan_text(plan) + "\n" + command_of(plan, request, !texts.frame.empty()) + "\n");
+                     plan_text(plan) + "\n" + command_of(plan, request, !args.frame.empty()) + "\n");
     }
     if (!globals.quiet)
         say("measured in " + seconds_text(plan.terms_seconds + plan.contest_seconds) + " on a few pixels");
-    if (plan.chosen.gets_there()) return 0;
+    if (plan.chosen.reaches_goal()) return 0;
     fail(ExitCode::differs, request.scene_file.string(), "no mode reaches the goal; the one shown comes closest");
 }
 }
 
 void check_for_plan(const RenderOptions& render, const std::string& groups) {
-    const Options texts{render, {}, {}, groups};
-    check_saved(texts);
-    groups_option(texts);
+    const Options args{render, {}, {}, groups};
+    check_saved(args);
+    groups_option(args);
     make_request(render, render.mode == automatic ? main_mode() : find_mode(render.mode, "--mode"));
 }
 
@@ -249,14 +249,14 @@ void add_groups_option(const Command& command, std::string& groups) {
 
 Run add_plan(const Command& program) {
     const Command command = program.command("plan", "which mode a scene needs for an error or a time, and why");
-    auto texts = std::make_shared<Options>();
-    RenderOptions& render = texts->render;
+    auto args = std::make_shared<Options>();
+    RenderOptions& render = args->render;
     render.mode = automatic, render.output = "out.####.exr";
     command.option("SCENE", render.scene, "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself", "")
         .required();
-    command.option("--save", texts->save, "write the plan to a file, for tyndall render --plan", "FILE");
-    add_groups_option(command, texts->groups);
-    command.option("--frame", texts->frame, "which frame of the scene to measure (default: its first)", "N");
+    command.option("--save", args->save, "write the plan to a file, for tyndall render --plan", "FILE");
+    add_groups_option(command, args->groups);
+    command.option("--frame", args->frame, "which frame of the scene to measure (default: its first)", "N");
     command.option("--mode", render.mode, "with --save: a mode, instead of the one the plan chooses", "NAME");
     add_planned_options(command, render);
     command.footer(
@@ -265,6 +265,6 @@ Run add_plan(const Command& program) {
         "a closed form bounds it closely enough, that is used instead. Modes are then measured from coarse\n"
         "to fine against exact single scattering. tyndall render --mode auto does the same and renders.\n"
         "Exit code 0: a mode reaches the goal; 1: none does.");
-    return [texts](const Globals& globals) { return run_plan(*texts, globals); };
+    return [args](const Globals& globals) { return run_plan(*args, globals); };
 }
 }

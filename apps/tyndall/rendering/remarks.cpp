@@ -65,7 +65,7 @@ void say_before(const Scene& scene, const Snapshot& first, const Limitations& li
                 const std::vector<std::string>& settings, const RenderRequest& request, const Mode& mode,
                 const Globals& globals) {
     say_idle_settings(settings, mode, globals);
-    if (request.history > 0 && !mode.remembers && !globals.quiet)
+    if (request.history > 0 && !mode.uses_history && !globals.quiet)
         say("note: --history has no effect: " + std::string(mode.name) + " does not use earlier frames");
     if (request.time_samples > 0 && !first.moments && !globals.quiet)
         say("note: --time-samples has no effect: the shutter is closed, or nothing moves while it is open");

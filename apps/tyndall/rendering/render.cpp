@@ -37,7 +37,7 @@ void choose_frames(const Scene& scene, const std::string& order, RenderRequest& 
 // Rounds the sample count to the equal batches that measuring noise needs. Notes that, and rounding to half floats.
 void settle_noise(const RenderRequest& request, RenderPlan& plan, const Globals& globals) {
     if (request.grouping.groups > 0) return; // the plan has settled it
-    const bool first_round = request.target_error > 0 && request.time_budget == 0 && error_is_noise(*plan.mode);
+    const bool first_round = request.target_error > 0 && request.time_budget == 0 && is_unbiased(*plan.mode);
     if (!(has_goal(request) ? first_round : measures_noise(request))) return say_rounding(request, globals);
     int& samples = plan.settings.pixel.samples;
     const int asked = std::exchange(samples, batched_samples(samples));
@@ -55,8 +55,8 @@ struct Rendered {
     RenderReport report;
 };
 
-std::string stats_name(const RenderOptions& texts, const RenderRequest& request, bool several) {
-    return texts.stats.empty() || !several ? texts.stats : with_word(texts.stats, request.mode);
+std::string stats_name(const RenderOptions& args, const RenderRequest& request, bool several) {
+    return args.stats.empty() || !several ? args.stats : with_word(args.stats, request.mode);
 }
 
 // What the requests of several modes share.
@@ -70,7 +70,7 @@ void measure_exposure(const Scene& scene, std::span<const RenderRequest> request
                       Common& common, const Globals& globals) {
     const RenderRequest& request = requests[0];
     const bool pngs = request.png || requests.size() > 1;
-    if (common.exposure || !pngs || !measures_exposure(scene, request)) return;
+    if (common.exposure || !pngs || !needs_auto_exposure(scene, request)) return;
     int orders = 1;
     for (const RenderRequest& one : requests) orders = std::max(orders, orders_of(find_mode(one.mode), one.settings));
     common.exposure = automatic_exposure(scene, request, orders, &first);
@@ -80,12 +80,12 @@ void measure_exposure(const Scene& scene, std::span<const RenderRequest> request
 
 // Renders the frames of one of the requests, writes its statistics file and prints a summary.
 Rendered render_frames(const Scene& scene, std::span<const RenderRequest> requests, const RenderRequest& request,
-                       const RenderOptions& texts, Common& common, const Globals& globals) {
+                       const RenderOptions& args, Common& common, const Globals& globals) {
     const bool several = requests.size() > 1;
     LoadedFrame first = load_first_frame(scene, request, &common.first);
     Rendered result{request,
-                    texts.mode == automatic ? chosen_plan(scene, request, first.snapshot, globals)
-                                            : plan_as_asked(request),
+                    args.mode == automatic ? chosen_plan(scene, request, first.snapshot, globals)
+                                           : requested_plan(request),
                     {}};
     const std::vector<std::string> absent = drop_absent_layers(scene, result.plan, result.request);
     if (!globals.quiet && !absent.empty())
@@ -95,11 +95,11 @@ Rendered render_frames(const Scene& scene, std::span<const RenderRequest> reques
     result.plan.exposure = common.exposure;
     common.first = request.frames.size() == 1 ? first.snapshot : Snapshot{};
     common.first.cache = nullptr; // the time that a mode takes must not depend on the one before it
-    const bool measured = !globals.quiet || globals.json || !texts.stats.empty();
+    const bool measured = !globals.quiet || globals.json || !args.stats.empty();
     Limitations limitations = limitations_of(scene, request, result.plan, first.snapshot, measured);
-    if (request.history > 0 && result.plan.mode->remembers && is_chromatic(first.snapshot))
+    if (request.history > 0 && result.plan.mode->uses_history && is_chromatic(first.snapshot))
         fail(ExitCode::usage, "--history", "cannot be combined with fog whose extinction differs between the channels");
-    say_before(scene, first.snapshot, limitations, texts.settings, request, *result.plan.mode, globals);
+    say_before(scene, first.snapshot, limitations, args.settings, request, *result.plan.mode, globals);
 
     Progress progress(globals.progress, several ? request.mode : "render", static_cast<double>(request.frames.size()),
                       globals.json);
@@ -109,7 +109,7 @@ Rendered render_frames(const Scene& scene, std::span<const RenderRequest> reques
     say_files_found(request, globals);
     // For the statistics only: a frame's header must not depend on which frame was the first.
     report.limitations = std::move(limitations);
-    if (const std::string file = stats_name(texts, request, several); !file.empty())
+    if (const std::string file = stats_name(args, request, several); !file.empty())
         write_file_atomically(file, stats_json(report, result.request, result.plan));
     if (!globals.quiet) {
         for (const std::string& note : report.notes) say("note: " + printable(note, 460));
@@ -137,14 +137,12 @@ int outcome(const std::vector<Rendered>& all, const std::string& scene) {
              " were not finite numbers and were ignored");
 }
 
-std::string sheet_name(const RenderOptions& texts, int frame) {
-    return std::filesystem::path(frame_name(with_word(texts.output, "modes"), frame))
-        .replace_extension(".png")
-        .string();
+std::string sheet_name(const RenderOptions& args, int frame) {
+    return std::filesystem::path(frame_name(with_word(args.output, "modes"), frame)).replace_extension(".png").string();
 }
 
 // Writes one PNG per frame with the images of all modes, their times, and their errors against a reference.
-void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const RenderOptions& texts,
+void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const RenderOptions& args,
                   const Globals& globals) {
     for (const int frame : all[0].request.frames) {
         std::vector<SheetEntry> entries;
@@ -159,71 +157,71 @@ void write_sheets(const Scene& scene, const std::vector<Rendered>& all, const Re
             entries.push_back({std::string(one.plan.mode->name), times, found->file});
         }
         const Display display = display_of(scene, all[0].request, all[0].plan, frame);
-        write_sheet(sheet_name(texts, frame), entries, texts.sheet_reference, frame, display);
+        write_sheet(sheet_name(args, frame), entries, args.sheet_reference, frame, display);
     }
-    if (!globals.quiet) say("to view: " + printable(sheet_name(texts, all[0].request.frames[0])));
+    if (!globals.quiet) say("to view: " + printable(sheet_name(args, all[0].request.frames[0])));
 }
 
 // The requests of all modes asked for; several modes have separate output files.
-std::vector<RenderRequest> make_requests(const RenderOptions& texts) {
+std::vector<RenderRequest> make_requests(const RenderOptions& args) {
     std::vector<RenderRequest> requests;
     // With --mode auto, the main renderer stands in until the scene is loaded.
     const std::vector<const Mode*> asked =
-        asked_modes("--mode", texts.mode == automatic ? std::string(main_mode().name) : texts.mode);
+        modes_option("--mode", args.mode == automatic ? std::string(main_mode().name) : args.mode);
     for (const Mode* mode : asked) {
-        requests.push_back(make_request(texts, *mode));
-        if (asked.size() > 1) requests.back().output = with_word(texts.output, mode->name);
+        requests.push_back(make_request(args, *mode));
+        if (asked.size() > 1) requests.back().output = with_word(args.output, mode->name);
     }
     return requests;
 }
 
 // The requests of a plan, or of the command line alone.
-std::vector<RenderRequest> requests_of(const RenderOptions& texts, std::optional<SavedPlan>& plan) {
-    if (texts.scene.empty() && texts.plan.empty())
+std::vector<RenderRequest> requests_of(const RenderOptions& args, std::optional<SavedPlan>& plan) {
+    if (args.scene.empty() && args.plan.empty())
         fail(ExitCode::usage, "SCENE", "a scene file or --plan is required (tyndall render --help)");
-    if (texts.output.empty()) fail(ExitCode::usage, "--output", "is required (tyndall render --help)");
-    if (!texts.plan.empty()) return {planned_request(texts, plan.emplace())};
-    for (const auto& [name, text] : {std::pair{"--part", &texts.part},
-                                     {"--more", &texts.more},
-                                     {"--checkpoint", &texts.checkpoint},
-                                     {"--cache-local", &texts.cache_local}})
+    if (args.output.empty()) fail(ExitCode::usage, "--output", "is required (tyndall render --help)");
+    if (!args.plan.empty()) return {planned_request(args, plan.emplace())};
+    for (const auto& [name, text] : {std::pair{"--part", &args.part},
+                                     {"--more", &args.more},
+                                     {"--checkpoint", &args.checkpoint},
+                                     {"--cache-local", &args.cache_local}})
         if (!text->empty()) fail(ExitCode::usage, name, "needs --plan");
-    return make_requests(texts);
+    return make_requests(args);
 }
 
 // Opens the files that tyndall prepare made for the plan's frames; null when there are none.
-std::shared_ptr<CacheFolder> prepared_files(const RenderOptions& texts, const SavedPlan& plan,
+std::shared_ptr<CacheFolder> prepared_files(const RenderOptions& args, const SavedPlan& plan,
                                             const std::vector<int>& frames, const Globals& globals) {
     std::vector<std::string> notes;
-    std::shared_ptr<CacheFolder> files = open_prepared(plan, frames, texts.cache_local, notes);
-    if (!files && !texts.cache_local.empty()) notes.push_back("--cache-local has no effect: nothing was prepared");
+    std::shared_ptr<CacheFolder> files = open_prepared(plan, frames, args.cache_local, notes);
+    if (!files && !args.cache_local.empty()) notes.push_back("--cache-local has no effect: nothing was prepared");
     if (!globals.quiet)
         for (const std::string& note : notes) say("note: " + printable(note, 460));
     return files;
 }
 
 // Throws Error for options that contradict each other and files that cannot be written.
-void check_requests(const RenderOptions& texts, std::vector<RenderRequest>& requests, OutputPlaces& places) {
-    choice_among("--order", texts.order, {"listed", "spread"});
-    if (requests.size() == 1 && !texts.sheet_reference.empty())
+void check_requests(const RenderOptions& args, std::vector<RenderRequest>& requests, OutputPaths& places) {
+    choice_among("--order", args.order, {"listed", "spread"});
+    if (requests.size() == 1 && !args.sheet_reference.empty())
         fail(ExitCode::usage, "--reference", "needs several modes; for one image use tyndall compare");
     for (const RenderRequest& request : requests) {
         if (!request.frames.empty())
             places.check(request.output, request.frames);
         else
             places.check(std::filesystem::path(frame_name(request.output, 1)));
-        if (!texts.stats.empty()) places.check(std::filesystem::path(stats_name(texts, request, requests.size() > 1)));
+        if (!args.stats.empty()) places.check(std::filesystem::path(stats_name(args, request, requests.size() > 1)));
     }
 }
 
 // The checks that need the scene. Also sets the frames of the requests.
-void check_with_scene(const Scene& scene, const RenderOptions& texts, std::vector<RenderRequest>& requests,
-                      OutputPlaces& places) {
+void check_with_scene(const Scene& scene, const RenderOptions& args, std::vector<RenderRequest>& requests,
+                      OutputPaths& places) {
     const auto size_of = [&](const RenderRequest& request) {
         return request.resolution.x > 0 ? request.resolution : scene.resolution;
     };
     for (RenderRequest& request : requests) {
-        choose_frames(scene, texts.order, request);
+        choose_frames(scene, args.order, request);
         places.check(request.output, request.frames);
         find_camera(scene, request.camera);
         check_crop(request, size_of(request));
@@ -231,39 +229,39 @@ void check_with_scene(const Scene& scene, const RenderOptions& texts, std::vecto
             range_of(request.grouping, find_mode(request.mode),
                      view_of(scene, request, request.settings, request.frames[0]));
     }
-    if (!texts.sheet_reference.empty())
-        check_sheet_reference(texts.sheet_reference, requests[0].frames, size_of(requests[0]));
+    if (!args.sheet_reference.empty())
+        check_sheet_reference(args.sheet_reference, requests[0].frames, size_of(requests[0]));
     if (requests.size() > 1)
-        for (const int frame : requests[0].frames) places.check(std::filesystem::path(sheet_name(texts, frame)));
+        for (const int frame : requests[0].frames) places.check(std::filesystem::path(sheet_name(args, frame)));
 }
 
-int run_render(const RenderOptions& texts, const Globals& globals) {
+int run_render(const RenderOptions& args, const Globals& globals) {
     std::optional<SavedPlan> saved;
-    std::vector<RenderRequest> requests = requests_of(texts, saved);
+    std::vector<RenderRequest> requests = requests_of(args, saved);
     const bool several = requests.size() > 1, part = is_part(requests[0].grouping);
-    const LoadOptions options = saved ? LoadOptions{saved->request.light_units} : load_options(texts);
+    const LoadOptions options = saved ? LoadOptions{saved->request.light_units} : load_options(args);
     for (RenderRequest& request : requests) request.light_units = options.light_units;
-    OutputPlaces places;
-    check_requests(texts, requests, places);
+    OutputPaths places;
+    check_requests(args, requests, places);
     set_stop_remark(part ? "; finished work is kept, --resume continues"
                          : "; finished frames are kept, --resume continues",
                     part ? 10 : 1);
     const Scene scene = load_scene(requests[0].scene_file, options);
     if (saved) check_inputs(*saved, scene);
-    if (saved) requests[0].files = prepared_files(texts, *saved, requests[0].frames, globals);
+    if (saved) requests[0].files = prepared_files(args, *saved, requests[0].frames, globals);
     stop_if_cancelled();
-    check_with_scene(scene, texts, requests, places);
+    check_with_scene(scene, args, requests, places);
 
     std::vector<Rendered> all;
     std::string reports;
     Common common;
     for (RenderRequest& request : requests) {
         request.started = all.empty() ? program_start() : steady_seconds();
-        all.push_back(render_frames(scene, requests, request, texts, common, globals));
+        all.push_back(render_frames(scene, requests, request, args, common, globals));
         reports += (reports.empty() ? "" : ",\n") + stats_json(all.back().report, all.back().request, all.back().plan);
         stop_if_cancelled();
     }
-    if (several) write_sheets(scene, all, texts, globals);
+    if (several) write_sheets(scene, all, args, globals);
     if (!several && !globals.quiet && !is_part(all[0].request.grouping)) say_look(all[0].request);
     if (globals.json) print_report((several ? "[" + reports + "]" : reports) + "\n");
     return outcome(all, requests[0].scene_file.string());
@@ -272,12 +270,12 @@ int run_render(const RenderOptions& texts, const Globals& globals) {
 
 Run add_render(const Command& program) {
     const Command command = program.command("render", "light a scene and render its frames to OpenEXR files");
-    auto texts = std::make_shared<RenderOptions>();
-    add_render_options(command, *texts);
+    auto args = std::make_shared<RenderOptions>();
+    add_render_options(command, *args);
     command.footer("Example: the first second at full HD, with PNGs to look at\n"
                    "  tyndall render scenes/window.json -o out/window.####.exr --frames 1-24 --res 1920x1080 --png\n"
                    "A quick look first: --quality draft --res 480x270 --frames 1\n"
                    "Light is in candela and lux, lengths in metres, colors linear Rec.709.");
-    return [texts](const Globals& globals) { return run_render(*texts, globals); };
+    return [args](const Globals& globals) { return run_render(*args, globals); };
 }
 }

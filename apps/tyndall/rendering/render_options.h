@@ -16,21 +16,21 @@ struct RenderOptions {
     bool png = false, resume = false, full_float = false;
 };
 
-void add_render_options(const Command& command, RenderOptions& texts);
+void add_render_options(const Command& command, RenderOptions& args);
 // Adds the options that a saved plan stores, except scene and mode.
-void add_planned_options(const Command& command, RenderOptions& texts);
+void add_planned_options(const Command& command, RenderOptions& args);
 
 // The mode and those options that differ from their defaults, as words of a command line.
-std::vector<std::string> planned_words(const RenderOptions& texts);
+std::vector<std::string> planned_words(const RenderOptions& args);
 
 // The modes named by an option: one name, several separated by commas, or all. Throws Error (usage).
-std::vector<const Mode*> asked_modes(std::string_view option, const std::string& text);
+std::vector<const Mode*> modes_option(std::string_view option, const std::string& text);
 
 // The request that the command line alone makes. Throws Error (usage) before any file is touched.
-RenderRequest make_request(const RenderOptions& texts, const Mode& mode);
-LoadOptions load_options(const RenderOptions& texts);
+RenderRequest make_request(const RenderOptions& args, const Mode& mode);
+LoadOptions load_options(const RenderOptions& args);
 
 // The request that --plan and the options beside it make. Throws Error (usage) for an option that the plan fixes.
-RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan);
+RenderRequest planned_request(const RenderOptions& args, SavedPlan& plan);
 void check_crop(const RenderRequest& request, ivec2 picture);
 }

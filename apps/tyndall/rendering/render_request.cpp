@@ -53,7 +53,7 @@ void read_orders(const std::string& text, RenderRequest& request) {
 // Throws Error (usage) for a sample count together with a goal, which determines it; without a time budget, path takes
 // one to start from.
 void check_samples(const RenderRequest& request, const Mode& mode) {
-    if (!has_goal(request) || (error_is_noise(mode) && request.time_budget == 0)) return;
+    if (!has_goal(request) || (is_unbiased(mode) && request.time_budget == 0)) return;
     if (request.settings.pixel.samples != settings_for(request.quality).pixel.samples)
         fail(ExitCode::usage, "--samples",
              std::string(request.time_budget > 0 ? "--time-budget" : "--target-error") +
@@ -80,7 +80,7 @@ void check_crop(const RenderRequest& request, ivec2 picture) {
         fail(ExitCode::usage, "--crop", formatted("reaches beyond the image of %dx%d pixels", picture.x, picture.y));
 }
 
-std::vector<const Mode*> asked_modes(std::string_view option, const std::string& text) {
+std::vector<const Mode*> modes_option(std::string_view option, const std::string& text) {
     std::vector<const Mode*> result;
     if (text == "all") {
         for (const Mode& mode : modes()) result.push_back(&mode);
@@ -97,66 +97,66 @@ std::vector<const Mode*> asked_modes(std::string_view option, const std::string&
 }
 
 namespace {
-void read_look(const RenderOptions& texts, RenderRequest& request) {
+void read_look(const RenderOptions& args, RenderRequest& request) {
     for (const auto& [name, text] :
-         {std::pair{"--exposure", &texts.exposure}, {"--view-transform", &texts.view_transform}})
-        if (!text->empty() && !texts.png)
+         {std::pair{"--exposure", &args.exposure}, {"--view-transform", &args.view_transform}})
+        if (!text->empty() && !args.png)
             fail(ExitCode::usage, name, "applies to PNGs only, EXR files store light unchanged: add --png");
-    request.automatic_exposure = texts.exposure == automatic;
-    if (!texts.exposure.empty() && !request.automatic_exposure)
-        request.exposure = number_option("--exposure", texts.exposure, -100, 100);
-    if (!texts.view_transform.empty())
+    request.automatic_exposure = args.exposure == automatic;
+    if (!args.exposure.empty() && !request.automatic_exposure)
+        request.exposure = number_option("--exposure", args.exposure, -100, 100);
+    if (!args.view_transform.empty())
         request.view_transform =
-            static_cast<ViewTransform>(choice_among("--view-transform", texts.view_transform, view_transform_names()));
+            static_cast<ViewTransform>(choice_among("--view-transform", args.view_transform, view_transform_names()));
 }
 }
 
-RenderRequest make_request(const RenderOptions& texts, const Mode& mode) {
+RenderRequest make_request(const RenderOptions& args, const Mode& mode) {
     RenderRequest request;
-    request.scene_file = texts.scene;
-    request.output = texts.output;
-    if (!texts.frames.empty()) request.frames = parse_frames(texts.frames);
-    check_pattern(texts.output, ".exr", request.frames.size() > 1);
+    request.scene_file = args.scene;
+    request.output = args.output;
+    if (!args.frames.empty()) request.frames = parse_frames(args.frames);
+    check_pattern(args.output, ".exr", request.frames.size() > 1);
     request.mode = mode.name;
-    request.quality = quality_named(texts.quality);
+    request.quality = quality_named(args.quality);
     request.settings = settings_for(request.quality);
-    const bool goal = !texts.target_error.empty() || !texts.time_budget.empty();
-    if (error_is_noise(mode) && !goal) request.settings.pixel.samples *= noisy_factor;
-    if (!texts.samples.empty())
-        request.settings.pixel.samples = static_cast<int>(integer_option("--samples", texts.samples, 1, 4096));
-    if (!texts.orders.empty()) read_orders(texts.orders, request);
-    for (const std::string& assignment : texts.settings) apply_setting(request.settings, assignment);
-    if (!texts.target_error.empty()) {
-        request.target_error = number_option("--target-error", texts.target_error, 1e-5, 10);
+    const bool goal = !args.target_error.empty() || !args.time_budget.empty();
+    if (is_unbiased(mode) && !goal) request.settings.pixel.samples *= noisy_factor;
+    if (!args.samples.empty())
+        request.settings.pixel.samples = static_cast<int>(integer_option("--samples", args.samples, 1, 4096));
+    if (!args.orders.empty()) read_orders(args.orders, request);
+    for (const std::string& assignment : args.settings) apply_setting(request.settings, assignment);
+    if (!args.target_error.empty()) {
+        request.target_error = number_option("--target-error", args.target_error, 1e-5, 10);
         check_target(mode);
     }
-    if (!texts.time_budget.empty()) {
-        request.time_budget = number_option("--time-budget", texts.time_budget, 1e-3, 1e6);
+    if (!args.time_budget.empty()) {
+        request.time_budget = number_option("--time-budget", args.time_budget, 1e-3, 1e6);
         check_target(mode, "--time-budget");
     }
-    if (texts.mode == automatic && !goal) request.target_error = usual_error(request.quality);
+    if (args.mode == automatic && !goal) request.target_error = default_error(request.quality);
     check_samples(request, mode);
-    if (!texts.history.empty() && has_goal(request))
+    if (!args.history.empty() && has_goal(request))
         fail(ExitCode::usage, "--history",
              "cannot be combined with --target-error and --time-budget: they measure single frames");
-    if (!texts.history.empty()) request.history = static_cast<int>(integer_option("--history", texts.history, 0, 1000));
-    if (!texts.shutter.empty()) request.shutter = shutter_option(texts.shutter);
-    if (!texts.time_samples.empty())
-        request.time_samples = static_cast<int>(integer_option("--time-samples", texts.time_samples, 1, max_moments));
-    request.camera = texts.camera;
-    if (!texts.resolution.empty()) request.resolution = resolution_option("--res", texts.resolution);
-    if (!texts.crop.empty()) read_crop(texts.crop, request);
-    if (!texts.crop.empty() && !texts.resolution.empty()) check_crop(request, request.resolution);
-    if (!texts.seed.empty()) request.seed = static_cast<uint32_t>(integer_option("--seed", texts.seed, 0, UINT32_MAX));
-    request.missing = static_cast<MissingFrame>(choice_among("--missing", texts.missing, missing_frame_names));
-    read_look(texts, request);
-    if (!texts.aov.empty()) request.exr.layers = parsed_layers(texts.aov);
-    request.background = choice_among("--background", texts.background, {"on", "off"}) == 0;
+    if (!args.history.empty()) request.history = static_cast<int>(integer_option("--history", args.history, 0, 1000));
+    if (!args.shutter.empty()) request.shutter = shutter_option(args.shutter);
+    if (!args.time_samples.empty())
+        request.time_samples = static_cast<int>(integer_option("--time-samples", args.time_samples, 1, max_moments));
+    request.camera = args.camera;
+    if (!args.resolution.empty()) request.resolution = resolution_option("--res", args.resolution);
+    if (!args.crop.empty()) read_crop(args.crop, request);
+    if (!args.crop.empty() && !args.resolution.empty()) check_crop(request, request.resolution);
+    if (!args.seed.empty()) request.seed = static_cast<uint32_t>(integer_option("--seed", args.seed, 0, UINT32_MAX));
+    request.missing = static_cast<MissingFrame>(choice_among("--missing", args.missing, missing_frame_names));
+    read_look(args, request);
+    if (!args.aov.empty()) request.exr.layers = parsed_layers(args.aov);
+    request.background = choice_among("--background", args.background, {"on", "off"}) == 0;
     if (!request.background && wants_layer(request, "background"))
         fail(ExitCode::usage, "--aov", "the layer background is not available with --background off");
-    request.exr.full_float = texts.full_float;
-    request.png = texts.png, request.resume = texts.resume;
-    request.isa = chosen_isa(texts.isa);
+    request.exr.full_float = args.full_float;
+    request.png = args.png, request.resume = args.resume;
+    request.isa = select_isa(args.isa);
     return request;
 }
 
@@ -171,70 +171,69 @@ void read_part_option(const std::string& text, Grouping& grouping) {
 }
 
 // Throws Error (usage) for options that a plan fixes.
-void check_planned(const RenderOptions& texts) {
+void check_planned(const RenderOptions& args) {
     const RenderOptions usual;
-    const std::tuple<const char*, bool> decided[] = {{"SCENE", !texts.scene.empty()},
-                                                     {"--mode", texts.mode != usual.mode},
-                                                     {"--quality", texts.quality != usual.quality},
-                                                     {"--camera", !texts.camera.empty()},
-                                                     {"--res", !texts.resolution.empty()},
-                                                     {"--crop", !texts.crop.empty()},
-                                                     {"--samples", !texts.samples.empty()},
-                                                     {"--light-units", texts.light_units != usual.light_units},
-                                                     {"--missing", texts.missing != usual.missing},
-                                                     {"--aov", !texts.aov.empty()},
-                                                     {"--seed", !texts.seed.empty()},
-                                                     {"--isa", texts.isa != usual.isa},
-                                                     {"--orders", !texts.orders.empty()},
-                                                     {"--target-error", !texts.target_error.empty()},
-                                                     {"--time-budget", !texts.time_budget.empty()},
-                                                     {"--history", !texts.history.empty()},
-                                                     {"--shutter", !texts.shutter.empty()},
-                                                     {"--time-samples", !texts.time_samples.empty()},
-                                                     {"--background", texts.background != usual.background},
-                                                     {"--set", !texts.settings.empty()},
-                                                     {"--float", texts.full_float}};
+    const std::tuple<const char*, bool> decided[] = {{"SCENE", !args.scene.empty()},
+                                                     {"--mode", args.mode != usual.mode},
+                                                     {"--quality", args.quality != usual.quality},
+                                                     {"--camera", !args.camera.empty()},
+                                                     {"--res", !args.resolution.empty()},
+                                                     {"--crop", !args.crop.empty()},
+                                                     {"--samples", !args.samples.empty()},
+                                                     {"--light-units", args.light_units != usual.light_units},
+                                                     {"--missing", args.missing != usual.missing},
+                                                     {"--aov", !args.aov.empty()},
+                                                     {"--seed", !args.seed.empty()},
+                                                     {"--isa", args.isa != usual.isa},
+                                                     {"--orders", !args.orders.empty()},
+                                                     {"--target-error", !args.target_error.empty()},
+                                                     {"--time-budget", !args.time_budget.empty()},
+                                                     {"--history", !args.history.empty()},
+                                                     {"--shutter", !args.shutter.empty()},
+                                                     {"--time-samples", !args.time_samples.empty()},
+                                                     {"--background", args.background != usual.background},
+                                                     {"--set", !args.settings.empty()},
+                                                     {"--float", args.full_float}};
     for (const auto& [name, given] : decided)
         if (given) fail(ExitCode::usage, name, "is fixed by the plan: plan again to change it");
 }
 }
 
-RenderRequest planned_request(const RenderOptions& texts, SavedPlan& plan) {
-    check_planned(texts);
-    plan = load_plan(texts.plan);
+RenderRequest planned_request(const RenderOptions& args, SavedPlan& plan) {
+    check_planned(args);
+    plan = load_plan(args.plan);
     RenderRequest request = plan.request;
     use_planned_isa(request.isa);
-    request.output = texts.output;
+    request.output = args.output;
     Grouping& grouping = request.grouping;
-    if (!texts.part.empty()) read_part_option(texts.part, grouping);
-    if (!texts.more.empty()) {
-        const size_t at = texts.more.find('@');
-        grouping.more = static_cast<int>(integer_option("--more", texts.more.substr(0, at), 1, 1 << 16));
+    if (!args.part.empty()) read_part_option(args.part, grouping);
+    if (!args.more.empty()) {
+        const size_t at = args.more.find('@');
+        grouping.more = static_cast<int>(integer_option("--more", args.more.substr(0, at), 1, 1 << 16));
         grouping.after = grouping.groups;
-        if (at != texts.more.npos)
+        if (at != args.more.npos)
             grouping.after =
-                static_cast<int>(integer_option("--more", texts.more.substr(at + 1), grouping.groups, 1 << 20));
-        if (texts.part.empty()) grouping.part = grouping.parts = 1;
+                static_cast<int>(integer_option("--more", args.more.substr(at + 1), grouping.groups, 1 << 20));
+        if (args.part.empty()) grouping.part = grouping.parts = 1;
     }
-    if (!texts.checkpoint.empty() && !is_part(grouping))
-        fail(ExitCode::usage, "--checkpoint", "needs --part or --more");
-    if (!texts.checkpoint.empty())
-        request.checkpoint_seconds = 60 * number_option("--checkpoint", texts.checkpoint, 0.01, 10000);
-    if (is_part(grouping) && texts.png)
+    if (!args.checkpoint.empty() && !is_part(grouping)) fail(ExitCode::usage, "--checkpoint", "needs --part or --more");
+    if (!args.checkpoint.empty())
+        request.checkpoint_seconds = 60 * number_option("--checkpoint", args.checkpoint, 0.01, 10000);
+    if (is_part(grouping) && args.png)
         fail(ExitCode::usage, "--png", "a part is not an image; tyndall merge writes the frame");
-    if (!texts.frames.empty()) {
-        request.frames = parse_frames(texts.frames);
+    if (!args.frames.empty()) {
+        request.frames = parse_frames(args.frames);
         for (const int frame : request.frames)
             if (!std::ranges::count(plan.request.frames, frame))
                 fail(ExitCode::usage, "--frames", formatted("frame %d is not in the plan", frame));
     }
-    check_pattern(texts.output, ".exr", request.frames.size() > 1);
-    read_look(texts, request);
-    request.png = texts.png, request.resume = texts.resume;
+    check_pattern(args.output, ".exr", request.frames.size() > 1);
+    read_look(args, request);
+    request.png = args.png, request.resume = args.resume;
     return request;
 }
 
-LoadOptions load_options(const RenderOptions& texts) {
-    return {static_cast<LightUnits>(choice_among("--light-units", texts.light_units, light_unit_names))};
+LoadOptions load_options(const RenderOptions& args) {
+    return {static_cast<LightUnits>(choice_among("--light-units", args.light_units, light_unit_names))};
 }
 }

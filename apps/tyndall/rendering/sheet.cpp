@@ -14,7 +14,7 @@ void check_sheet_reference(const std::string& pattern, std::span<const int> fram
         const std::string file = frame_name(pattern, frame);
         if (file == last) return; // one for all frames
         last = file;
-        const ivec2 display = read_picture(file).display;
+        const ivec2 display = read_exr_colors(file).display;
         if (display != size)
             refuse(file,
                    formatted("has %d x %d pixels; the frames will have %d x %d", display.x, display.y, size.x, size.y));
@@ -23,16 +23,16 @@ void check_sheet_reference(const std::string& pattern, std::span<const int> fram
 
 void write_sheet(const std::filesystem::path& sheet, const std::vector<SheetEntry>& entries, const std::string& pattern,
                  int frame, const Display& display) {
-    std::optional<Picture> reference;
-    if (!pattern.empty()) reference = read_picture(frame_name(pattern, frame));
-    std::vector<SheetPicture> pictures;
+    std::optional<ExrColors> reference;
+    if (!pattern.empty()) reference = read_exr_colors(frame_name(pattern, frame));
+    std::vector<SheetImage> pictures;
     for (const SheetEntry& entry : entries) {
-        Picture picture = read_picture(entry.file);
+        ExrColors picture = read_exr_colors(entry.file);
         std::vector<std::string> lines{entry.mode, entry.times};
         if (reference) {
             check_same_frame(picture, *reference);
             const Comparison found = compare(picture, *reference, viewing_of(reference->beauty));
-            lines.push_back("error " + share_words(found.worst_rmse()) + formatted(", FLIP %.3f", found.flip));
+            lines.push_back("error " + percent_label(found.worst_rmse()) + formatted(", FLIP %.3f", found.flip));
         }
         pictures.push_back({std::move(picture.beauty), std::move(lines)});
     }

@@ -35,7 +35,7 @@ std::optional<uint64_t> unpacked_zip(std::string_view packed, std::vector<unsign
 }
 
 // Uncompressed bytes of the pixels in the inclusive rectangle from..to.
-uint64_t whole_bytes(const ExrPartClaims& part, ivec2 from, ivec2 to) {
+uint64_t whole_bytes(const ExrPartHeader& part, ivec2 from, ivec2 to) {
     uint64_t bytes = 0;
     for (const ExrChannelClaim& channel : part.channels) {
         const auto values = [&](int first, int last) { // sampled positions (multiples of the step) in first..last
@@ -54,7 +54,7 @@ struct ExrBlock {
     uint64_t whole = 0;         // uncompressed bytes
 };
 
-void check_block(ExrCursor& table, std::string_view file, const ExrPartClaims& part, const ExrBlock& expected,
+void check_block(ExrCursor& table, std::string_view file, const ExrPartHeader& part, const ExrBlock& expected,
                  std::vector<unsigned char>& room) {
     const uint64_t offset = table.number<uint64_t>();
     if (offset >= file.size()) refuse(table.file, expected.name + " is missing: the file is truncated or damaged");
@@ -78,7 +78,7 @@ void check_block(ExrCursor& table, std::string_view file, const ExrPartClaims& p
 }
 
 // Calls visit(block) for each block in offset-table order.
-template<class Visit> void visit_lines(const ExrPartClaims& part, std::vector<int32_t> place, const Visit& visit) {
+template<class Visit> void visit_lines(const ExrPartHeader& part, std::vector<int32_t> place, const Visit& visit) {
     const int lines = lines_of(part.compression);
     place.push_back(0);
     for (int y = part.low.y; y <= part.high.y; y += lines) {
@@ -88,7 +88,7 @@ template<class Visit> void visit_lines(const ExrPartClaims& part, std::vector<in
     }
 }
 
-template<class Visit> void visit_tiles(const ExrPartClaims& part, std::vector<int32_t> place, const Visit& visit) {
+template<class Visit> void visit_tiles(const ExrPartHeader& part, std::vector<int32_t> place, const Visit& visit) {
     const ivec2 tiles = (part.high - part.low + part.tile) / part.tile;
     const size_t first = place.size();
     place.resize(first + 4); // column, row, level in x and y
@@ -102,14 +102,14 @@ template<class Visit> void visit_tiles(const ExrPartClaims& part, std::vector<in
 }
 }
 
-void check_exr_blocks(std::string_view bytes, const ExrClaims& claims, size_t part, const std::string& file) {
+void check_exr_blocks(std::string_view bytes, const ExrHeaders& claims, size_t part, const std::string& file) {
     ExrCursor table{bytes.substr(claims.tables), file};
     for (size_t before = 0; before < part; ++before) table.bytes(claims.parts[before].chunks * sizeof(uint64_t));
     std::vector<int32_t> place;
     if (claims.multipart) place.push_back(static_cast<int32_t>(part));
     std::vector<unsigned char> room;
     const auto check = [&](const ExrBlock& block) { check_block(table, bytes, claims.parts[part], block, room); };
-    const ExrPartClaims& chosen = claims.parts[part];
+    const ExrPartHeader& chosen = claims.parts[part];
     if (chosen.tiled)
         visit_tiles(chosen, place, check);
     else

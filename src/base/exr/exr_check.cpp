@@ -21,7 +21,7 @@ enum : uint32_t { tiled_flag = 0x200, long_names_flag = 0x400, deep_flag = 0x800
 // Upper bound on the compression ratio: deflate reaches 1032, and DWA can first reduce 64 values to one.
 uint64_t best_ratio(ExrCompression compression) { return compression >= ExrCompression::dwaa ? 64 * 1032 : 2 * 1032; }
 
-void read_channels(ExrCursor cursor, ExrPartClaims& claims) {
+void read_channels(ExrCursor cursor, ExrPartHeader& claims) {
     for (std::string_view name; !(name = cursor.name()).empty();) {
         const int type = cursor.integer();
         cursor.bytes(4); // perceptual flag, reserved
@@ -43,13 +43,13 @@ void read_window(ExrCursor cursor, ivec2& low, ivec2& high) {
     if (low.x > high.x || low.y > high.y) refuse(cursor.file, "a window is empty");
 }
 
-void read_compression(ExrCursor cursor, ExrPartClaims& claims) {
+void read_compression(ExrCursor cursor, ExrPartHeader& claims) {
     const auto number = static_cast<unsigned char>(cursor.bytes(1)[0]);
     if (number >= compression_names.size()) refuse(cursor.file, "unknown compression");
     claims.compression = static_cast<ExrCompression>(number);
 }
 
-void read_tiles(ExrCursor cursor, ExrPartClaims& claims) {
+void read_tiles(ExrCursor cursor, ExrPartHeader& claims) {
     claims.tile.x = cursor.integer(), claims.tile.y = cursor.integer();
     if (claims.tile.x < 1 || claims.tile.y < 1) refuse(cursor.file, "the tiles are empty");
     if (claims.tile.x > largest_tile || claims.tile.y > largest_tile)
@@ -87,7 +87,7 @@ struct ExpectedAttributes {
     }
 };
 
-void read_expected(ExpectedAttributes::Kind kind, ExrCursor value, ExrPartClaims& claims) {
+void read_expected(ExpectedAttributes::Kind kind, ExrCursor value, ExrPartHeader& claims) {
     switch (kind) {
     case ExpectedAttributes::channels:
         return read_channels(value, claims);
@@ -105,7 +105,7 @@ void read_expected(ExpectedAttributes::Kind kind, ExrCursor value, ExrPartClaims
 }
 
 // The remaining attributes that affect how the part is read.
-void read_other(std::string_view name, ExrCursor value, bool multipart, ExrPartClaims& claims) {
+void read_other(std::string_view name, ExrCursor value, bool multipart, ExrPartHeader& claims) {
     if (name == "type") {
         if (value.left != "scanlineimage" && value.left != "tiledimage")
             refuse(value.file, "only scanline and tiled images are supported");
@@ -120,7 +120,7 @@ void read_other(std::string_view name, ExrCursor value, bool multipart, ExrPartC
 }
 
 // The pixels must fit in memory, and the file must be at least as large as the best compression ratio allows.
-void check_amount(const ExrPartClaims& claims, uint64_t file_bytes, const std::string& file) {
+void check_amount(const ExrPartHeader& claims, uint64_t file_bytes, const std::string& file) {
     const ivec2 size = claims.high - claims.low + 1;
     if (size.x > largest_side || size.y > largest_side) refuse(file, "the image is larger than 16384 x 16384 pixels");
     const uint64_t pixels = static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y);
@@ -143,7 +143,7 @@ void check_amount(const ExrPartClaims& claims, uint64_t file_bytes, const std::s
 }
 
 // Reads one part's header. Returns false at the end of the headers of a multipart file.
-bool read_header(ExrCursor& cursor, uint32_t flags, ExrPartClaims& claims) {
+bool read_header(ExrCursor& cursor, uint32_t flags, ExrPartHeader& claims) {
     const bool multipart = flags & multipart_flag;
     claims.tiled = flags & tiled_flag;
     ExpectedAttributes expected;
@@ -183,12 +183,12 @@ uint32_t read_flags(ExrCursor& cursor) {
 
 std::string_view name_of(ExrCompression compression) { return compression_names[static_cast<size_t>(compression)]; }
 
-ExrClaims read_exr_claims(std::string_view bytes, const std::string& file) {
+ExrHeaders read_exr_headers(std::string_view bytes, const std::string& file) {
     ExrCursor cursor{bytes, file};
     const uint32_t flags = read_flags(cursor);
-    ExrClaims claims;
+    ExrHeaders claims;
     claims.multipart = flags & multipart_flag;
-    for (ExrPartClaims part; read_header(cursor, flags, part); part = {}) {
+    for (ExrPartHeader part; read_header(cursor, flags, part); part = {}) {
         check_amount(part, bytes.size(), file);
         if (part.chunks > bytes.size() / sizeof(uint64_t))
             refuse(file, "the file is too short for its blocks: truncated or damaged");

@@ -18,7 +18,7 @@ struct ExrChannelClaim {
     int step = 1;  // subsampling: pixels between values, in x and y
 };
 
-struct ExrPartClaims {
+struct ExrPartHeader {
     ivec2 display_low{0}, display_high{0};
     ivec2 low{0}, high{0}; // data window, inclusive
     ExrCompression compression = ExrCompression::none;
@@ -30,17 +30,17 @@ struct ExrPartClaims {
     uint64_t chunks = 0;            // entries in its offset table; multipart files only
 };
 
-struct ExrClaims {
-    std::vector<ExrPartClaims> parts;
+struct ExrHeaders {
+    std::vector<ExrPartHeader> parts;
     size_t tables = 0; // byte offset of the block offset tables
     bool multipart = false;
 };
 
 // Walks the headers. Throws Error (refused) unless all parts are flat (not deep) images within the limits.
-ExrClaims read_exr_claims(std::string_view bytes, const std::string& file);
+ExrHeaders read_exr_headers(std::string_view bytes, const std::string& file);
 
 // Walks every pixel block of a part at its largest level. Throws Error (refused) unless each block is where the offset
 // table says and carries the right coordinates; for NONE, RLE, ZIPS and ZIP also unless it decodes to its full size,
 // because the library leaves missing pixels uninitialized.
-void check_exr_blocks(std::string_view bytes, const ExrClaims& claims, size_t part, const std::string& file);
+void check_exr_blocks(std::string_view bytes, const ExrHeaders& claims, size_t part, const std::string& file);
 }

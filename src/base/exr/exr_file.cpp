@@ -53,7 +53,7 @@ void decode_rows(Imf::InputFile& input, int first, int count, ExrFile& file) {
 }
 
 ExrFile read_checked(std::string_view bytes, const std::string& file, bool pixels) {
-    const ExrClaims claims = read_exr_claims(bytes, file);
+    const ExrHeaders claims = read_exr_headers(bytes, file);
     if (claims.multipart) refuse(file, "multi-part files are not supported");
     if (std::ranges::any_of(claims.parts[0].channels, [](const ExrChannelClaim& c) { return c.step != 1; }))
         refuse(file, "subsampled channels are not supported");

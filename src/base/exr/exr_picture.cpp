@@ -15,21 +15,21 @@ namespace tyndall {
 namespace {
 constexpr int largest_picture_side = 16384;
 
-const ExrChannelClaim* channel_of(const ExrPartClaims& part, std::string_view name) {
+const ExrChannelClaim* channel_of(const ExrPartHeader& part, std::string_view name) {
     const auto found = std::ranges::find(part.channels, name, &ExrChannelClaim::name);
     return found == part.channels.end() ? nullptr : &*found;
 }
 
-bool has_chroma(const ExrPartClaims& part) {
+bool has_chroma(const ExrPartHeader& part) {
     return channel_of(part, "Y") && (channel_of(part, "RY") || channel_of(part, "BY"));
 }
 
-bool has_colors(const ExrPartClaims& part) {
+bool has_colors(const ExrPartHeader& part) {
     return std::ranges::any_of(std::array{"R", "G", "B", "Y"}, [&](const char* c) { return channel_of(part, c); });
 }
 
 // Names of the first few channels, for the error message.
-std::string some_channels(const ExrPartClaims& part) {
+std::string some_channels(const ExrPartHeader& part) {
     std::string text;
     for (size_t n = 0; n < std::min<size_t>(part.channels.size(), 4); ++n)
         text += (n ? ", " : "") + part.channels[n].name.substr(0, 60);
@@ -37,19 +37,19 @@ std::string some_channels(const ExrPartClaims& part) {
 }
 
 struct Chosen {
-    ExrClaims claims;
+    ExrHeaders claims;
     size_t index = 0;
-    const ExrPartClaims& part() const { return claims.parts[index]; }
+    const ExrPartHeader& part() const { return claims.parts[index]; }
 };
 
 // Chooses the first part with color channels.
 Chosen choose_part(std::string_view bytes, const std::string& where) {
-    Chosen chosen{read_exr_claims(bytes, where), 0};
-    const std::vector<ExrPartClaims>& parts = chosen.claims.parts;
+    Chosen chosen{read_exr_headers(bytes, where), 0};
+    const std::vector<ExrPartHeader>& parts = chosen.claims.parts;
     chosen.index = static_cast<size_t>(std::ranges::find_if(parts, has_colors) - parts.begin());
     if (chosen.index == parts.size())
         refuse(where, "the image has no channel R, G, B or Y; it has " + some_channels(parts[0]));
-    const ExrPartClaims& part = chosen.part();
+    const ExrPartHeader& part = chosen.part();
     if (part.cube) refuse(where, "the image is a cube map; convert it to latitude-longitude with exrenvmap");
     const ivec2 display = part.display_high - part.display_low + 1;
     if (std::max(display.x, display.y) > largest_picture_side)
@@ -61,8 +61,8 @@ Chosen choose_part(std::string_view bytes, const std::string& where) {
 }
 
 // Decodes full-resolution channels.
-void decode_channels(Imf::IStream& stream, const Chosen& chosen, ExrPicture& picture) {
-    const ExrPartClaims& part = chosen.part();
+void decode_channels(Imf::IStream& stream, const Chosen& chosen, ExrImage& picture) {
+    const ExrPartHeader& part = chosen.part();
     const bool colored = channel_of(part, "R") || channel_of(part, "G") || channel_of(part, "B");
     const Imath::Box2i window({part.low.x, part.low.y}, {part.high.x, part.high.y});
     Imf::FrameBuffer buffer;
@@ -81,7 +81,7 @@ void decode_channels(Imf::IStream& stream, const Chosen& chosen, ExrPicture& pic
 }
 
 // Decodes luminance with subsampled chroma, which the library upsamples.
-void decode_chroma(Imf::IStream& stream, ExrPicture& picture) {
+void decode_chroma(Imf::IStream& stream, ExrImage& picture) {
     Imf::RgbaInputFile input(stream, 0);
     const Imath::Box2i window = input.dataWindow();
     std::vector<Imf::Rgba> line(static_cast<size_t>(picture.color.size.x));
@@ -101,9 +101,9 @@ ivec2 exr_display_size(std::string_view bytes, const std::string& where) {
     return chosen.part().display_high - chosen.part().display_low + 1;
 }
 
-ExrPicture decode_exr_picture(std::string_view bytes, const std::string& where) {
+ExrImage decode_exr_image(std::string_view bytes, const std::string& where) {
     const Chosen chosen = choose_part(bytes, where);
-    const ExrPartClaims& part = chosen.part();
+    const ExrPartHeader& part = chosen.part();
     const bool chroma = has_chroma(part);
     for (const char* name : {"R", "G", "B", "Y"})
         if (const ExrChannelClaim* channel = channel_of(part, name); channel && channel->step != 1)
@@ -112,8 +112,8 @@ ExrPicture decode_exr_picture(std::string_view bytes, const std::string& where) 
         refuse(where, "luminance and chroma are supported only in single-part files");
     check_exr_blocks(bytes, chosen.claims, chosen.index, where);
 
-    ExrPicture picture{part.display_high - part.display_low + 1, part.low - part.display_low,
-                       Image<vec3>(part.high - part.low + 1), part.foreign_primaries};
+    ExrImage picture{part.display_high - part.display_low + 1, part.low - part.display_low,
+                     Image<vec3>(part.high - part.low + 1), part.foreign_primaries};
     guarded_exr(where, [&] {
         ExrStream stream(where, bytes);
         if (chroma)

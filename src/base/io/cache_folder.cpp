@@ -73,7 +73,7 @@ std::shared_ptr<const CacheFile> find_cache_file(CacheFolder& folder, const std:
 
 void keep_in_folder(CacheFolder& folder, const std::string& what, const std::string& made_from, double seconds,
                     const CacheWriter& fields) {
-    if (!folder.writes) return note_cost(&folder, what, seconds);
+    if (!folder.writes) return record_cost(&folder, what, seconds);
     const std::string name = cache_file_name(what, made_from);
     const std::filesystem::path path = folder.folder / name;
     const uint64_t size = cache_file_size(fields.pieces());
@@ -85,13 +85,13 @@ void keep_in_folder(CacheFolder& folder, const std::string& what, const std::str
     folder.costs.push_back({what, seconds, CostKind::cached, name});
 }
 
-void note_cost(CacheFolder* folder, std::string_view what, double seconds, CostKind kind, std::string file) {
+void record_cost(CacheFolder* folder, std::string_view what, double seconds, CostKind kind, std::string file) {
     if (!folder) return;
     const std::scoped_lock lock(folder->mutex);
     folder->costs.push_back({std::string(what), seconds, kind, std::move(file)});
 }
 
-double noted_seconds(CacheFolder* folder) {
+double rebuild_seconds(CacheFolder* folder) {
     if (!folder) return 0;
     const std::scoped_lock lock(folder->mutex);
     double sum = 0;

@@ -52,11 +52,11 @@ void keep_in_folder(CacheFolder& folder, const std::string& what, const std::str
                     const CacheWriter& fields);
 
 // Records the cost of an object; `folder` may be null.
-void note_cost(CacheFolder* folder, std::string_view what, double seconds, CostKind kind = CostKind::rebuilt,
-               std::string file = {});
+void record_cost(CacheFolder* folder, std::string_view what, double seconds, CostKind kind = CostKind::rebuilt,
+                 std::string file = {});
 
 // Total build time of the recorded objects that were not found in the cache, in seconds.
-double noted_seconds(CacheFolder* folder);
+double rebuild_seconds(CacheFolder* folder);
 
 // Verifies every byte of a file in the folder. Throws Error: unreadable if it is missing or truncated; refused.
 void check_cache_file(const CacheFolder& folder, const std::string& name, const CacheEntry& entry);
@@ -67,7 +67,7 @@ void check_unchanged(CacheFolder& folder);
 // Returns the object that `content` fully determines: loaded from the folder, or built with make() and then stored if
 // the folder is writable. With no folder or empty content it is only built.
 template<class T, class Make>
-T found_or_made(CacheFolder* folder, const std::string& what, const std::string& content, const Make& make) {
+T load_or_build(CacheFolder* folder, const std::string& what, const std::string& content, const Make& make) {
     if (!folder) return make();
     if constexpr (requires(T thing, CacheWriter & writer) { fields(thing, writer); }) {
         if (!content.empty()) {
@@ -91,7 +91,7 @@ T found_or_made(CacheFolder* folder, const std::string& what, const std::string&
     }
     const double start = steady_seconds();
     T thing = make();
-    note_cost(folder, what, steady_seconds() - start);
+    record_cost(folder, what, steady_seconds() - start);
     return thing;
 }
 }

@@ -22,7 +22,7 @@ void check_pattern(const std::string& pattern, std::string_view extension, bool 
                  std::string(extension));
 }
 
-OutputPlaces::~OutputPlaces() {
+OutputPaths::~OutputPaths() {
     // remove() only succeeds on empty directories; anything else in them is a user's work.
     for (auto made = made_.rbegin(); made != made_.rend(); ++made) {
         std::error_code ignored;
@@ -30,7 +30,7 @@ OutputPlaces::~OutputPlaces() {
     }
 }
 
-void OutputPlaces::check(const fs::path& file) {
+void OutputPaths::check(const fs::path& file) {
     std::error_code ignored;
     const fs::path directory = file.parent_path();
     const bool seen = std::find(checked_.begin(), checked_.end(), directory) != checked_.end();
@@ -45,7 +45,7 @@ void OutputPlaces::check(const fs::path& file) {
     sweep_temporaries(directory.empty() ? fs::path(".") : directory);
 }
 
-void OutputPlaces::check(const std::string& pattern, const std::vector<int>& frames, std::string_view option) {
+void OutputPaths::check(const std::string& pattern, const std::vector<int>& frames, std::string_view option) {
     std::vector<std::string> names;
     for (const int frame : frames) names.push_back(frame_name(pattern, frame));
     for (const std::string& name : names) check(fs::path(name));

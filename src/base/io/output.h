@@ -12,9 +12,9 @@ void check_pattern(const std::string& pattern, std::string_view extension, bool 
                    std::string_view option = "--output");
 
 // Checks that every file can be written. Directories it creates are removed again if they are empty at the end.
-class OutputPlaces {
+class OutputPaths {
 public:
-    ~OutputPlaces();
+    ~OutputPaths();
     // Throws Error (unwritable).
     void check(const std::filesystem::path& file);
     void check(const std::string& pattern, const std::vector<int>& frames, std::string_view option = "--output");

@@ -45,7 +45,7 @@ public:
     bool number_float(number_float_t value, const string_t&) override { return number(value); }
     bool string(string_t& value) override {
         if (value.find('\0') != value.npos)
-            refuse(json_place(file_, next_pointer()), "the string contains a zero byte");
+            refuse(json_location(file_, next_pointer()), "the string contains a zero byte");
         return add(Json::Kind::string).string = std::move(value), true;
     }
     bool binary(binary_t&) override { return false; } // not part of JSON text
@@ -56,9 +56,9 @@ public:
     bool end_array() override { return levels_.pop_back(), true; }
     bool key(string_t& name) override {
         Level& level = levels_.back();
-        if (name.find('\0') != name.npos) refuse(json_place(file_, pointer()), "a key contains a zero byte");
+        if (name.find('\0') != name.npos) refuse(json_location(file_, pointer()), "a key contains a zero byte");
         if (!level.keys.insert(name).second)
-            refuse(json_place(file_, json_pointer(pointer(), name)), "the key appears twice");
+            refuse(json_location(file_, json_pointer(pointer(), name)), "the key appears twice");
         level.value->members.emplace_back(std::move(name), Json{});
         return true;
     }
@@ -77,7 +77,8 @@ private:
 
     bool open(Json::Kind kind) {
         if (levels_.size() >= max_levels)
-            refuse(json_place(file_, next_pointer()), "nested deeper than " + std::to_string(max_levels) + " levels");
+            refuse(json_location(file_, next_pointer()),
+                   "nested deeper than " + std::to_string(max_levels) + " levels");
         levels_.push_back({&add(kind), {}});
         return true;
     }

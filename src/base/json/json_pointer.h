@@ -35,7 +35,7 @@ inline std::string json_pointer_key(std::string_view part) {
 }
 
 // "scenes/a.json: /lights/0"; only the file for the root.
-inline std::string json_place(std::string_view file, std::string_view pointer) {
+inline std::string json_location(std::string_view file, std::string_view pointer) {
     return std::string(file) + (pointer.empty() ? "" : ": ") + std::string(pointer);
 }
 }

@@ -11,8 +11,8 @@ constexpr size_t longest_string = 10000;
 
 void check_string(const std::string& text, const std::string& pointer, std::string_view file) {
     if (text.size() > longest_string)
-        refuse(json_place(file, pointer), "a string of " + std::to_string(text.size()) + " bytes; at most " +
-                                              std::to_string(longest_string) + " are allowed");
+        refuse(json_location(file, pointer), "a string of " + std::to_string(text.size()) + " bytes; at most " +
+                                                 std::to_string(longest_string) + " are allowed");
 }
 
 void check_strings(const Json& value, const std::string& pointer, std::string_view file) {
@@ -29,6 +29,6 @@ void check_strings(const Json& value, const std::string& pointer, std::string_vi
 void check_schema(const Json& document, std::string_view schema_text, std::string_view file) {
     check_strings(document, "", file);
     if (const auto problem = schema_problem(document, parse_json(schema_text, "schema")))
-        refuse(json_place(file, problem->pointer), problem->what);
+        refuse(json_location(file, problem->pointer), problem->what);
 }
 }

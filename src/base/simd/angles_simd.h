@@ -15,10 +15,10 @@ HWY_INLINE Floats atan(const Floats& value) {
     const Floats size = abs(value);
     const Mask16 steep = size > 1.0f;
     const Floats x = select(steep, 1.0f / max(size, 1.0f), size), s = x * x;
-    Floats p = fused(s, 0.0028662257f, -0.0161657367f);
-    p = fused(p, s, 0.0429096138f), p = fused(p, s, -0.0752896400f), p = fused(p, s, 0.1065626393f);
-    p = fused(p, s, -0.1420889944f), p = fused(p, s, 0.1999355085f), p = fused(p, s, -0.3333314528f);
-    p = fused(p, s, 1.0f) * x;
+    Floats p = fma(s, 0.0028662257f, -0.0161657367f);
+    p = fma(p, s, 0.0429096138f), p = fma(p, s, -0.0752896400f), p = fma(p, s, 0.1065626393f);
+    p = fma(p, s, -0.1420889944f), p = fma(p, s, 0.1999355085f), p = fma(p, s, -0.3333314528f);
+    p = fma(p, s, 1.0f) * x;
     const Floats angle = select(steep, 0.5f * pi - p, p);
     return select(value < 0.0f, -angle, angle);
 }
@@ -29,17 +29,17 @@ HWY_INLINE Floats tan(const Floats& angle) {
     const Floats size = abs(angle);
     const Mask16 steep = size > 0.25f * pi;
     const Floats x = select(steep, max(0.5f * pi - size, 0.0f), size), s = x * x;
-    Floats p = fused(s, 0.0095168091f, 0.0029005250f);
-    p = fused(p, s, 0.0245650893f), p = fused(p, s, 0.0533740603f), p = fused(p, s, 0.1333923995f);
-    p = fused(p, s, 0.3333314036f);
-    p = fused(p, s, 1.0f) * x;
+    Floats p = fma(s, 0.0095168091f, 0.0029005250f);
+    p = fma(p, s, 0.0245650893f), p = fma(p, s, 0.0533740603f), p = fma(p, s, 0.1333923995f);
+    p = fma(p, s, 0.3333314036f);
+    p = fma(p, s, 1.0f) * x;
     const Floats value = select(steep, 1.0f / max(p, 1e-20f), p);
     return select(angle < 0.0f, -value, value);
 }
 
 // atan(b) - atan(a) for b >= a, without cancellation when both are large.
 HWY_INLINE Floats angle_between(const Floats& a, const Floats& b) {
-    const Floats below = fused(a, b, 1.0f), above = b - a;
+    const Floats below = fma(a, b, 1.0f), above = b - a;
     const Mask16 wide = below <= 0.0f; // a right angle or more
     const Floats turned = atan(above / select(abs(below) < 1e-30f, 1e-30f, below));
     return select(wide & (turned < 0.0f), turned + pi, turned);

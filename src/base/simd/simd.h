@@ -7,7 +7,7 @@
 //     #include "base/simd/simd.h"
 // puts its kernels in HWY_BEFORE_NAMESPACE(); namespace tyndall::HWY_NAMESPACE { ... } HWY_AFTER_NAMESPACE();
 // and ends with #if HWY_ONCE, HWY_EXPORT(kernel) and HWY_DYNAMIC_DISPATCH(kernel)(...).
-// Multiply-adds are fused only through fused(), so AVX2 and AVX-512 give bit-identical results.
+// Multiply-adds are fused only through fma(), so AVX2 and AVX-512 give bit-identical results.
 #if defined(TYNDALL_BASE_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_BASE_SIMD_H
 #undef TYNDALL_BASE_SIMD_H
@@ -96,7 +96,7 @@ TYNDALL_SIMD_BINARY(Ints, Ints, max, hn::Max(a.part[i], b.part[i]))
 #undef TYNDALL_SIMD_BINARY
 
 // a·b + c with a single rounding (if the instruction set has it).
-HWY_INLINE Floats fused(const Floats& a, const Floats& b, const Floats& c) {
+HWY_INLINE Floats fma(const Floats& a, const Floats& b, const Floats& c) {
     Floats r;
     for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::MulAdd(a.part[i], b.part[i], c.part[i]);
     return r;
@@ -206,15 +206,15 @@ HWY_INLINE void gather_half_pairs(const uint16_t* base, const Ints& index, Float
 // e^x for x <= 88; 0 below -87. Relative error under 2e-7 (Cody–Waite reduction, degree-6 polynomial).
 HWY_INLINE Floats exp(const Floats& value) {
     const Floats x = min(max(value, -87.0f), 88.0f);
-    const Floats n = floor(fused(x, 1.44269504088896341f, 0.5f));
-    Floats r = fused(n, -0.693359375f, x);
-    r = fused(n, 2.12194440e-4f, r);
-    Floats p = fused(r, 1.9875691500e-4f, 1.3981999507e-3f);
-    p = fused(p, r, 8.3334519073e-3f);
-    p = fused(p, r, 4.1665795894e-2f);
-    p = fused(p, r, 1.6666665459e-1f);
-    p = fused(p, r, 5.0000001201e-1f);
-    p = fused(p, r * r, r + 1.0f);
+    const Floats n = floor(fma(x, 1.44269504088896341f, 0.5f));
+    Floats r = fma(n, -0.693359375f, x);
+    r = fma(n, 2.12194440e-4f, r);
+    Floats p = fma(r, 1.9875691500e-4f, 1.3981999507e-3f);
+    p = fma(p, r, 8.3334519073e-3f);
+    p = fma(p, r, 4.1665795894e-2f);
+    p = fma(p, r, 1.6666665459e-1f);
+    p = fma(p, r, 5.0000001201e-1f);
+    p = fma(p, r * r, r + 1.0f);
     Floats result;
     for (size_t i = 0; i < vectors_per_packet; ++i) {
         const auto exponent = hn::ShiftLeft<23>(hn::Add(hn::ConvertTo(IntTag(), n.part[i]), hn::Set(IntTag(), 127)));
@@ -225,9 +225,9 @@ HWY_INLINE Floats exp(const Floats& value) {
 
 // (1 - e^-x) / x for x >= 0, without cancellation: the mean transmittance over an optical depth x.
 HWY_INLINE Floats mean_transmittance(const Floats& x) {
-    Floats series = fused(x, -1.0f / 5040, 1.0f / 720);
-    series = fused(series, -x, 1.0f / 120), series = fused(series, -x, 1.0f / 24);
-    series = fused(series, -x, 1.0f / 6), series = fused(series, -x, 0.5f), series = fused(series, -x, 1.0f);
+    Floats series = fma(x, -1.0f / 5040, 1.0f / 720);
+    series = fma(series, -x, 1.0f / 120), series = fma(series, -x, 1.0f / 24);
+    series = fma(series, -x, 1.0f / 6), series = fma(series, -x, 0.5f), series = fma(series, -x, 1.0f);
     const Mask16 small = x < 0.35f;
     if (!any(!small)) return series;
     return select(small, series, (1.0f - exp(-x)) / max(x, 0.35f));
@@ -242,16 +242,16 @@ HWY_INLINE Vec3s operator+(const Vec3s& a, const Vec3s& b) { return {a.x + b.x, 
 HWY_INLINE Vec3s operator-(const Vec3s& a, const Vec3s& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 HWY_INLINE Vec3s operator*(const Vec3s& a, const Floats& s) { return {a.x * s, a.y * s, a.z * s}; }
 HWY_INLINE Vec3s operator*(const Vec3s& a, const Vec3s& b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-HWY_INLINE Vec3s fused(const Vec3s& a, const Floats& s, const Vec3s& b) {
-    return {fused(a.x, s, b.x), fused(a.y, s, b.y), fused(a.z, s, b.z)};
+HWY_INLINE Vec3s fma(const Vec3s& a, const Floats& s, const Vec3s& b) {
+    return {fma(a.x, s, b.x), fma(a.y, s, b.y), fma(a.z, s, b.z)};
 }
-HWY_INLINE Floats dot(const Vec3s& a, const Vec3s& b) { return fused(a.z, b.z, fused(a.y, b.y, a.x * b.x)); }
+HWY_INLINE Floats dot(const Vec3s& a, const Vec3s& b) { return fma(a.z, b.z, fma(a.y, b.y, a.x * b.x)); }
 
 // Affine matrix times points.
 HWY_INLINE Vec3s transform_points(const mat4& m, const Vec3s& p) {
-    return {fused(p.z, m[2].x, fused(p.y, m[1].x, fused(p.x, m[0].x, m[3].x))),
-            fused(p.z, m[2].y, fused(p.y, m[1].y, fused(p.x, m[0].y, m[3].y))),
-            fused(p.z, m[2].z, fused(p.y, m[1].z, fused(p.x, m[0].z, m[3].z)))};
+    return {fma(p.z, m[2].x, fma(p.y, m[1].x, fma(p.x, m[0].x, m[3].x))),
+            fma(p.z, m[2].y, fma(p.y, m[1].y, fma(p.x, m[0].y, m[3].y))),
+            fma(p.z, m[2].z, fma(p.y, m[1].z, fma(p.x, m[0].z, m[3].z)))};
 }
 }
 HWY_AFTER_NAMESPACE();

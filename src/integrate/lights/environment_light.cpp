@@ -11,7 +11,7 @@ namespace {
 enum Use : uint32_t { use_place = 0x5f1e, use_light, use_phase };
 
 // Appends one path by each strategy from one point; `weight` scales the scattered light.
-void append_paths(const Environment& environment, const ScatteringFog& fog, const FogThere& there, size_t ray,
+void append_paths(const Environment& environment, const ScatteringFog& fog, const FogSample& there, size_t ray,
                   float weight, float which, vec2 u, vec2 v, std::vector<ScatterPath>& paths) {
     const auto append = [&](vec3 direction, vec3 radiance, float by_light) {
         const auto [share, by_phase] = scattered(fog.media, there, direction);
@@ -25,16 +25,16 @@ void append_paths(const Environment& environment, const ScatteringFog& fog, cons
 }
 
 void append_ray(const Environment& environment, const ScatteringFog& fog, const RayBatch& batch, size_t i,
-                const SeenFog& seen, std::vector<ScatterPath>& paths) {
+                const FogSampler& seen, std::vector<ScatterPath>& paths) {
     const auto points = static_cast<uint32_t>(fog.points);
-    static thread_local FogThere there;
+    static thread_local FogSample there;
     for (uint32_t k = 0; k < points; ++k) {
         const vec2 u = point_numbers(batch, i, k, points, use_place);
         size_t piece = 0;
         const double t = seen.distance(double(u.x), piece);
-        if (!(look_at_fog(seen.pieces, piece, batch.rays[i], t, there) > 0)) continue;
+        if (!(evaluate_fog(seen.pieces, piece, batch.rays[i], t, there) > 0)) continue;
         const float weight =
-            static_cast<float>(seen.whole) * shown_share(fog, there.point) * environment.volume_scale / float(points);
+            static_cast<float>(seen.whole) * fade_at(fog, there.point) * environment.volume_scale / float(points);
         append_paths(environment, fog, there, i, weight, u.y, point_numbers(batch, i, k, points, use_light),
                      point_numbers(batch, i, k, points, use_phase), paths);
     }
@@ -46,7 +46,7 @@ void append_environment_light(const Snapshot& snapshot, std::shared_ptr<const Sc
     if (!snapshot.environment) return;
     lights.push_back({shadows ? shadow_casters(*snapshot.environment, snapshot) : nullptr, OtherLight::ambient,
                       [environment = snapshot.environment, fog = std::move(fog)](
-                          const RayBatch& batch, size_t i, const SeenFog& seen, std::vector<ScatterPath>& paths) {
+                          const RayBatch& batch, size_t i, const FogSampler& seen, std::vector<ScatterPath>& paths) {
                           append_ray(*environment, *fog, batch, i, seen, paths);
                       }});
 }

@@ -18,13 +18,13 @@ constexpr int pairs_for_a_point = 2; // of distances: one equi-angular, one by t
 
 // The two distance sampling strategies on a ray for one light.
 struct Distances {
-    const SeenFog& fog;
-    AngleDistances angles;
+    const FogSampler& fog;
+    EquiAngularSampler angles;
 };
 
 // True if the phase function's lobe at a point is narrower than the solid angle of the light: only then is phase
 // function sampling worthwhile.
-bool is_wide(const ScatteringFog& fog, const FogThere& there, const Light& light) {
+bool is_wide(const ScatteringFog& fog, const FogSample& there, const Light& light) {
     const vec3 offset = there.point - light.position;
     float peak = 0;
     for (size_t m = 0; m < fog.peaks.size(); ++m) peak += there.shares[m] * fog.peaks[m];
@@ -41,17 +41,17 @@ struct DirectionNumbers {
 void append_paths(const ScatteringFog& fog, const Light& light, const Ray& ray, const Distances& distances, double t,
                   size_t piece, double count, const DirectionNumbers& u, size_t number,
                   std::vector<ScatterPath>& paths) {
-    static thread_local FogThere there;
-    const double extinction = look_at_fog(distances.fog.pieces, piece, ray, t, there);
+    static thread_local FogSample there;
+    const double extinction = evaluate_fog(distances.fog.pieces, piece, ray, t, there);
     if (!(extinction > 0)) return;
-    const double passing = distances.fog.passing(piece, t);
-    const double density = count * (distances.angles.density(t) + distances.fog.density(extinction, passing));
+    const double transmittance = distances.fog.transmittance(piece, t);
+    const double density = count * (distances.angles.density(t) + distances.fog.density(extinction, transmittance));
     if (!(density > 0)) return;
-    const double weight = extinction * passing / density * (shown_share(fog, there.point) * light.volume_scale);
+    const double weight = extinction * transmittance / density * (fade_at(fog, there.point) * light.volume_scale);
     const bool wide = is_wide(fog, there, light);
     const auto append = [&](vec3 direction, float distance, float steradians) {
         const auto [share, by_phase] = scattered(fog.media, there, direction);
-        const vec3 picture = face_picture(*light.area, there.point + distance * direction);
+        const vec3 picture = face_texture(*light.area, there.point + distance * direction);
         const vec3 arriving =
             share * radiance_of(light) * picture *
             static_cast<float>(weight * steradians / (1 + (wide ? double{steradians} * by_phase : 0)));
@@ -68,13 +68,13 @@ void append_paths(const ScatteringFog& fog, const Light& light, const Ray& ray, 
 }
 
 void append_ray(const ScatteringFog& fog, const Light& light, size_t number, const RayBatch& batch, size_t i,
-                const SeenFog& seen, std::vector<ScatterPath>& paths) {
+                const FogSampler& seen, std::vector<ScatterPath>& paths) {
     const Ray& ray = batch.rays[i];
     const FogPieces& pieces = seen.pieces;
     // Restrict sampling to the range of the light.
     const Interval<double> reach = light_reach(light, dvec3(ray.origin), dvec3(ray.direction));
-    const Distances distances{seen,
-                              angle_distances(ray, pieces, dvec3(light.position), double{capped_radius(light)}, reach)};
+    const Distances distances{
+        seen, equi_angular_sampler(ray, pieces, dvec3(light.position), double{capped_radius(light)}, reach)};
     if (distances.angles.empty()) return;
     const auto pairs = static_cast<uint32_t>(fog.points * pairs_for_a_point);
     const auto use = static_cast<uint32_t>(4 * number) * 0x9e37u;
@@ -95,8 +95,8 @@ void append_ray(const ScatteringFog& fog, const Light& light, size_t number, con
 }
 }
 
-void take_faces(Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
-                std::vector<PathLight>& lights) {
+void take_area_lights(Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                      std::vector<PathLight>& lights) {
     const auto first = std::ranges::find_if(snapshot.lights, [](const Light& light) { return light.area != nullptr; });
     const auto before = static_cast<size_t>(first - snapshot.lights.begin());
     const std::vector<Light> faces(first, snapshot.lights.end());
@@ -104,7 +104,7 @@ void take_faces(Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bo
     for (size_t number = 0; number < faces.size(); ++number) {
         if (!(faces[number].volume_scale > 0)) continue;
         lights.push_back({shadows ? shadow_casters(faces[number], snapshot) : nullptr, before + number,
-                          [light = faces[number], number, fog](const RayBatch& batch, size_t i, const SeenFog& seen,
+                          [light = faces[number], number, fog](const RayBatch& batch, size_t i, const FogSampler& seen,
                                                                std::vector<ScatterPath>& paths) {
                               append_ray(*fog, light, number, batch, i, seen, paths);
                           }});

@@ -22,11 +22,11 @@ void look_at(const FieldLight& light, const Medium& field, const Ray& ray, std::
              LightAtNode* result) {
     alignas(64) float t[16], v[4][16];
     for (size_t i = 0; i < 16; ++i) t[i] = nodes[std::min(i, nodes.size() - 1)].t;
-    const Vec3s point = fused(splat(ray.direction), load(t), splat(ray.origin));
+    const Vec3s point = fma(splat(ray.direction), load(t), splat(ray.origin));
     const Vec3s emission = emission16(field.optics.emission, point);
     Floats extinction = 0.0f;
     for (const Medium& medium : light.fog)
-        extinction = fused(density16(medium, point), grey_extinction(medium.optics), extinction);
+        extinction = fma(density16(medium, point), grey_extinction(medium.optics), extinction);
     store(emission.x, v[0]), store(emission.y, v[1]), store(emission.z, v[2]), store(extinction, v[3]);
     for (size_t i = 0; i < nodes.size(); ++i) result[i] = {vec3(v[0][i], v[1][i], v[2][i]), v[3][i]};
 }

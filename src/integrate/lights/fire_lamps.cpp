@@ -12,24 +12,24 @@ constexpr size_t max_lamps = 4;
 constexpr uint32_t places_asked = 1 << 14;
 constexpr float ball_by_spread = 5.0f / 3; // for a ball: radius² / mean squared distance to its center
 
-struct FirePlace {
+struct FireSample {
     dvec3 position{0}, candela{0};
     double weight = 0; // luminance of `candela`
 };
 
 // One part of the fire.
 struct FirePart {
-    std::vector<FirePlace> places;
+    std::vector<FireSample> places;
     dvec3 middle{0}, candela{0}, spread{0}; // spread: mean squared distance to `middle` per axis
     double weight = 0;
 };
 
-FirePart part_of(std::vector<FirePlace> places) {
+FirePart part_of(std::vector<FireSample> places) {
     FirePart part;
-    for (const FirePlace& place : places)
+    for (const FireSample& place : places)
         part.candela += place.candela, part.weight += place.weight, part.middle += place.weight * place.position;
     part.middle /= part.weight;
-    for (const FirePlace& place : places) {
+    for (const FireSample& place : places) {
         const dvec3 offset = place.position - part.middle;
         part.spread += place.weight / part.weight * (offset * offset);
     }
@@ -42,17 +42,17 @@ std::pair<FirePart, FirePart> halves(FirePart part) {
     int axis = part.spread.x >= part.spread.y ? 0 : 1;
     if (part.spread.z > part.spread[axis]) axis = 2;
     const auto second = std::ranges::partition(
-        part.places, [&](const FirePlace& place) { return place.position[axis] <= part.middle[axis]; });
-    std::vector<FirePlace> after(second.begin(), second.end());
+        part.places, [&](const FireSample& place) { return place.position[axis] <= part.middle[axis]; });
+    std::vector<FireSample> after(second.begin(), second.end());
     part.places.erase(second.begin(), second.end());
     return {part_of(std::move(part.places)), after.empty() ? FirePart{} : part_of(std::move(after))};
 }
 
-std::vector<FirePlace> places_of(const EmissiveBricks& fire) {
-    std::vector<FirePlace> places;
+std::vector<FireSample> fire_samples(const EmissiveBricks& fire) {
+    std::vector<FireSample> places;
     for (uint32_t i = 0; i < places_asked; ++i) {
         const Sample2 first = sample2(i, hash(0xf12eu)), second = sample2(i, hash(0xf12fu));
-        const EmissivePlace place = pick_emissive_place(fire, first.x, {first.y, second.x, second.y});
+        const EmissionSample place = sample_emission(fire, first.x, {first.y, second.x, second.y});
         const double weight = double{luminance(place.emission)} / place.density / places_asked;
         if (weight > 0)
             places.push_back(
@@ -62,17 +62,17 @@ std::vector<FirePlace> places_of(const EmissiveBricks& fire) {
 }
 
 // Error measure of replacing a part by one lamp: weight times spread.
-double wrongness(const FirePart& part) { return part.weight * (part.spread.x + part.spread.y + part.spread.z); }
+double split_error(const FirePart& part) { return part.weight * (part.spread.x + part.spread.y + part.spread.z); }
 }
 
 std::vector<Light> fire_lamps(const Snapshot& snapshot) {
     const auto fire = emissive_bricks(snapshot);
-    std::vector<FirePlace> places = fire ? places_of(*fire) : std::vector<FirePlace>{};
+    std::vector<FireSample> places = fire ? fire_samples(*fire) : std::vector<FireSample>{};
     if (places.empty()) return {};
     std::vector<FirePart> parts{part_of(std::move(places))};
     while (parts.size() < max_lamps) {
-        const auto worst = std::ranges::max_element(parts, {}, wrongness);
-        if (!(wrongness(*worst) > 0)) break;
+        const auto worst = std::ranges::max_element(parts, {}, split_error);
+        if (!(split_error(*worst) > 0)) break;
         auto [one, other] = halves(std::move(*worst));
         *worst = std::move(one);
         if (other.places.empty()) break;
@@ -93,7 +93,7 @@ std::vector<Light> fire_lamps(const Snapshot& snapshot) {
 
 // The mean of 1/r² over a ball of radius R at distance d is 1/d² · (1 + R²/(5 d²) + ...): the variance along an axis is
 // R²/5, and ∇²(1/r²) = 2/r⁴.
-double far_enough(const Light& lamp, double share) { return double{lamp.radius} / std::sqrt(5 * share); }
+double far_distance(const Light& lamp, double share) { return double{lamp.radius} / std::sqrt(5 * share); }
 
 Snapshot with_fire_lamps(Snapshot snapshot) {
     const std::vector<Light> lamps = fire_lamps(snapshot);

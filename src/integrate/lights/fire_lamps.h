@@ -13,7 +13,7 @@ std::vector<Light> fire_lamps(const Snapshot& snapshot);
 
 // Distance from such a lamp, meters, beyond which its relative error is at most `share`, estimated from the mean of
 // 1/r² over a ball of its size.
-double far_enough(const Light& lamp, double share);
+double far_distance(const Light& lamp, double share);
 
 // The snapshot with lamps for its fire appended to its lights.
 Snapshot with_fire_lamps(Snapshot snapshot);

@@ -8,7 +8,7 @@
 
 namespace tyndall {
 vec2 point_numbers(const RayBatch& batch, size_t ray, uint32_t k, uint32_t count, uint32_t use) {
-    const SamplePlace place = batch.places.empty() ? SamplePlace{0, batch.ids[ray]} : batch.places[ray];
+    const SampleIndex place = batch.places.empty() ? SampleIndex{0, batch.ids[ray]} : batch.places[ray];
     const Sample2 u = sample2(place.index * count + k, hash(place.sequence, use));
     return {u.x, u.y};
 }
@@ -33,17 +33,17 @@ double distance_at(const FogPieces& fog, double depth, size_t& piece) {
 }
 }
 
-double SeenFog::distance(double u, size_t& piece) const {
+double FogSampler::distance(double u, size_t& piece) const {
     return distance_at(pieces, factor > 0 ? -std::log1p(-factor * u * whole) / factor : u * whole, piece);
 }
 
-SeenFog seen_fog(const FogPieces& pieces, double factor) {
+FogSampler fog_sampler(const FogPieces& pieces, double factor) {
     return {pieces, factor, factor > 0 ? -std::expm1(-factor * pieces.depth) / factor : pieces.depth};
 }
 
-AngleDistances angle_distances(const Ray& ray, const FogPieces& fog, dvec3 point, double radius,
-                               Interval<double> reach) {
-    AngleDistances result;
+EquiAngularSampler equi_angular_sampler(const Ray& ray, const FogPieces& fog, dvec3 point, double radius,
+                                        Interval<double> reach) {
+    EquiAngularSampler result;
     result.stretch = {std::max(fog.pieces.front().low, reach.low), std::min(fog.pieces.back().high, reach.high)};
     if (!(result.stretch.high > result.stretch.low)) return result;
     const dvec3 offset = point - dvec3(ray.origin), direction(ray.direction);
@@ -60,7 +60,7 @@ size_t piece_at(const FogPieces& fog, double t) {
     return index > 0 && t < fog.pieces[index - 1].high ? index - 1 : fog.pieces.size();
 }
 
-double look_at_fog(const FogPieces& fog, size_t piece, const Ray& ray, double t, FogThere& there) {
+double evaluate_fog(const FogPieces& fog, size_t piece, const Ray& ray, double t, FogSample& there) {
     there.point = ray.at(static_cast<float>(t)), there.direction = ray.direction;
     there.shares.assign(fog.media, 0);
     double total = 0;
@@ -71,7 +71,7 @@ double look_at_fog(const FogPieces& fog, size_t piece, const Ray& ray, double t,
     return total;
 }
 
-std::pair<vec3, float> scattered(const std::vector<Medium>& media, const FogThere& fog, vec3 towards) {
+std::pair<vec3, float> scattered(const std::vector<Medium>& media, const FogSample& fog, vec3 towards) {
     const float cosine = glm::dot(fog.direction, towards);
     vec3 albedo(0);
     float density = 0;
@@ -84,7 +84,7 @@ std::pair<vec3, float> scattered(const std::vector<Medium>& media, const FogTher
     return {albedo, density};
 }
 
-vec3 direction_by_phase(const std::vector<Medium>& media, const FogThere& fog, float which, vec2 u) {
+vec3 direction_by_phase(const std::vector<Medium>& media, const FogSample& fog, float which, vec2 u) {
     size_t m = 0;
     while (m + 1 < media.size() && which >= fog.shares[m]) which -= fog.shares[m++];
     while (m > 0 && !(fog.shares[m] > 0)) --m;

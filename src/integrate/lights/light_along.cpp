@@ -21,7 +21,7 @@ LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, si
             k ? hash(batch.ids[ray], use_light_point, index, k) : hash(batch.ids[ray], use_light_point, index);
         u = {to_unit(hash(key, 0u)), to_unit(hash(key, 1u))}, v = {to_unit(hash(key, 2u)), 0};
     } else {
-        const SamplePlace place = batch.places[ray];
+        const SampleIndex place = batch.places[ray];
         u = sample2(place.index * count + k, hash(place.sequence, use_light_point, index, 0u));
         v = sample2(place.index * count + k, hash(place.sequence, use_light_point, index, 1u));
     }
@@ -89,7 +89,7 @@ void cut_lit(Interval<double> range, LightAlong& along) {
     static thread_local std::vector<Interval<double>> pieces;
     pieces.clear();
     for (Interval<double> stretch : along.lit) {
-        stretch = common(stretch, range);
+        stretch = intersection(stretch, range);
         for (const double kink : along.kinks)
             if (kink > stretch.low && kink < stretch.high) pieces.push_back({stretch.low, kink}), stretch.low = kink;
         if (!stretch.empty()) pieces.push_back(stretch);
@@ -148,7 +148,7 @@ void find_light(const Light& light, const LightPoint& point, const Ray& ray, con
     along.origin = dvec3(ray.origin), along.direction = dvec3(ray.direction);
     along.kinks.clear(), along.lit.clear(), along.shadowed.clear();
     Interval<double> range{0, ray.t_max};
-    if (along.local()) range = common(range, light_reach(light, along.origin, along.direction));
+    if (along.local()) range = intersection(range, light_reach(light, along.origin, along.direction));
     if (range.empty()) return;
     if (along.local()) {
         const dvec3 towards = dvec3(light.position) - along.origin;

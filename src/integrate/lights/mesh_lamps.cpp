@@ -55,7 +55,7 @@ std::vector<SurfaceEmission> points_of(const EmissiveTriangles& glow, const Occl
     for (uint32_t i = 0; i < points_asked; ++i) {
         const float u = (float(i) + 0.5f) / points_asked;
         const Sample2 pair = sample2(i, hash(0x3e5fu));
-        const EmissivePoint point = pick_glow_point(glow, surfaces, u, {pair.x, pair.y});
+        const EmissivePoint point = sample_triangles(glow, surfaces, u, {pair.x, pair.y});
         const auto found = std::ranges::upper_bound(glow.cumulative, double{u});
         const size_t triangle = std::min<size_t>(found - glow.cumulative.begin(), glow.triangles.size() - 1);
         const dvec3 candela = dvec3(point.emission) / (double{point.density} * points_asked);
@@ -88,7 +88,7 @@ std::pair<LampPart, LampPart> halves(const LampPart& part) {
 }
 
 // Error measure of replacing a part by one lamp: weight times spread; 0 for a single mesh, which cannot be split.
-double wrongness(const LampPart& part) {
+double split_error(const LampPart& part) {
     return part.instances.size() < 2 ? 0 : part.weight * (part.spread.x + part.spread.y + part.spread.z);
 }
 
@@ -108,8 +108,8 @@ std::vector<LampPart> parts_of(const EmissiveTriangles& glow, const Occluders& s
     if (points.empty()) return {};
     std::vector<LampPart> parts{part_of(std::move(points))};
     while (parts.size() < max_lamps) {
-        const auto worst = std::ranges::max_element(parts, {}, wrongness);
-        if (!(wrongness(*worst) > 0)) break;
+        const auto worst = std::ranges::max_element(parts, {}, split_error);
+        if (!(split_error(*worst) > 0)) break;
         auto [one, other] = halves(*worst);
         *worst = std::move(one);
         parts.push_back(std::move(other));

@@ -20,26 +20,26 @@ struct GlowingSurfaces {
 };
 
 EmissivePoint pick_point(const GlowingSurfaces& light, const RayBatch& batch, size_t i, uint32_t k, uint32_t count) {
-    return pick_glow_point(*light.triangles, *light.occluders, point_numbers(batch, i, k, count, use_triangle).x,
-                           point_numbers(batch, i, k, count, use_place));
+    return sample_triangles(*light.triangles, *light.occluders, point_numbers(batch, i, k, count, use_triangle).x,
+                            point_numbers(batch, i, k, count, use_place));
 }
 
 // Appends one of `count` pairs of paths: from the point at distance t to a point on an emissive surface.
-void append_path(const ScatteringFog& fog, const Ray& ray, const SeenFog& seen, const AngleDistances& angles, double t,
-                 size_t piece, double count, const EmissivePoint& target, size_t number,
+void append_path(const ScatteringFog& fog, const Ray& ray, const FogSampler& seen, const EquiAngularSampler& angles,
+                 double t, size_t piece, double count, const EmissivePoint& target, size_t number,
                  std::vector<ScatterPath>& paths) {
-    static thread_local FogThere there;
-    const double extinction = look_at_fog(seen.pieces, piece, ray, t, there);
+    static thread_local FogSample there;
+    const double extinction = evaluate_fog(seen.pieces, piece, ray, t, there);
     const vec3 offset = target.position - there.point;
     const float away = glm::length(offset);
     if (!(extinction > 0) || !(away > 0)) return;
-    const double passing = seen.passing(piece, t);
+    const double transmittance = seen.transmittance(piece, t);
     const double chance =
-        count * (angles.density(t) + seen.density(extinction, passing)) * double{target.density} * away * away;
+        count * (angles.density(t) + seen.density(extinction, transmittance)) * double{target.density} * away * away;
     if (!(chance > 0)) return;
     const vec3 direction = offset / away;
     const double weight =
-        extinction * passing * std::abs(glm::dot(target.normal, direction)) * shown_share(fog, there.point) / chance;
+        extinction * transmittance * std::abs(glm::dot(target.normal, direction)) * fade_at(fog, there.point) / chance;
     const ScatterPath path{number,
                            {there.point, direction, away * 0.9999f},
                            scattered(fog.media, there, direction).first * target.emission * static_cast<float>(weight)};
@@ -47,7 +47,7 @@ void append_path(const ScatteringFog& fog, const Ray& ray, const SeenFog& seen, 
 }
 
 void append_ray(const GlowingSurfaces& light, const ScatteringFog& fog, const RayBatch& batch, size_t i,
-                const SeenFog& seen, std::vector<ScatterPath>& paths) {
+                const FogSampler& seen, std::vector<ScatterPath>& paths) {
     const Ray& ray = batch.rays[i];
     const FogPieces& pieces = seen.pieces;
     const double min_height = closest_share * (pieces.pieces.back().high - pieces.pieces.front().low);
@@ -56,7 +56,7 @@ void append_ray(const GlowingSurfaces& light, const ScatteringFog& fog, const Ra
         const vec2 u = point_numbers(batch, i, k, pairs, use_distance);
         const auto append = [&](bool by_angle, uint32_t point) {
             const EmissivePoint target = pick_point(light, batch, i, point, 2 * pairs);
-            const AngleDistances angles = angle_distances(ray, pieces, dvec3(target.position), min_height);
+            const EquiAngularSampler angles = equi_angular_sampler(ray, pieces, dvec3(target.position), min_height);
             if (by_angle && angles.empty()) return;
             size_t piece = 0;
             const double t = by_angle ? angles.angles.at(u.x).t : seen.distance(double{u.y}, piece);
@@ -74,7 +74,7 @@ void append_mesh_light(const Snapshot& snapshot, std::shared_ptr<const Scatterin
     if (!light.triangles) return;
     lights.push_back({shadows ? snapshot.occluders : nullptr, OtherLight::emission,
                       [light = std::move(light), fog = std::move(fog)](
-                          const RayBatch& batch, size_t i, const SeenFog& seen, std::vector<ScatterPath>& paths) {
+                          const RayBatch& batch, size_t i, const FogSampler& seen, std::vector<ScatterPath>& paths) {
                           append_ray(light, *fog, batch, i, seen, paths);
                       }});
 }

@@ -22,14 +22,14 @@ std::shared_ptr<const ScatteringFog> scattering_fog(const Snapshot& snapshot, co
     return fog;
 }
 
-float shown_share(const ScatteringFog& fog, vec3 point) {
+float fade_at(const ScatteringFog& fog, vec3 point) {
     return fades(fog.style) ? style_fade(fog.style, eye_distance(fog.camera, point)) : 1;
 }
 
 namespace {
-void pass_surfaces(const Occluders& casters, std::span<const ScatterPath> paths, float* shares) {
+void trace_shadows(const Occluders& casters, std::span<const ScatterPath> paths, float* shares) {
     Occluders::ShadowRays rays{};
-    for (size_t i = 0; i < paths.size(); ++i) rays.set(i, paths[i].way);
+    for (size_t i = 0; i < paths.size(); ++i) rays.set(i, paths[i].shadow_ray);
     casters.transmission(rays, shares);
 }
 
@@ -49,12 +49,12 @@ void add_paths(const ScatteringFog& fog, const PathLight& light, std::span<const
         const auto some = paths.subspan(first, std::min<size_t>(16, paths.size() - first));
         alignas(64) float shares[16];
         std::fill_n(shares, 16, 1.0f);
-        if (light.casters) pass_surfaces(*light.casters, some, shares);
+        if (light.casters) trace_shadows(*light.casters, some, shares);
         for (size_t i = 0; i < some.size(); ++i) {
             const ScatterPath& path = some[i];
             ++results[path.ray].steps;
             if (!(shares[i] > 0)) continue;
-            const double depth = fog.light_depth > 0 ? fog.light_depth * optical_depth(fog.media, path.way) : 0;
+            const double depth = fog.light_depth > 0 ? fog.light_depth * optical_depth(fog.media, path.shadow_ray) : 0;
             const vec3 added = path.light * (shares[i] * static_cast<float>(std::exp(-depth)));
             results[path.ray].radiance += added;
             if (parts) batch.part(path.ray, part) += added;
@@ -66,11 +66,11 @@ void add_path_lights(const ScatteringFog& fog, std::span<const PathLight> lights
                      std::span<Scatter> results) {
     static thread_local FogPieces pieces[16];
     static thread_local std::vector<ScatterPath> paths;
-    std::optional<SeenFog> seen[16]; // for rays that hit fog
+    std::optional<FogSampler> seen[16]; // for rays that hit fog
     for (size_t i = 0; i < batch.rays.size(); ++i) {
         find_fog(batch.rays[i], fog.media, fog.min_transmittance, pieces[i]);
         if (!pieces[i].pieces.empty() && pieces[i].depth > 0)
-            seen[i].emplace(seen_fog(pieces[i], fog.style.view_depth));
+            seen[i].emplace(fog_sampler(pieces[i], fog.style.view_depth));
     }
     for (const PathLight& light : lights) {
         paths.clear();

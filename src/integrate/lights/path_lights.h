@@ -30,12 +30,12 @@ std::shared_ptr<const ScatteringFog> scattering_fog(const Snapshot& snapshot, co
                                                     float min_transmittance);
 
 // Style fade at a point: the share of scattered light that is kept.
-float shown_share(const ScatteringFog& fog, vec3 point);
+float fade_at(const ScatteringFog& fog, vec3 point);
 
 struct ScatterPath {
     size_t ray = 0;
-    Ray way{};     // from a point on the camera ray to the light
-    vec3 light{0}; // contribution if the shadow ray is unobstructed
+    Ray shadow_ray{}; // from a point on the camera ray to the light
+    vec3 light{0};    // contribution if the shadow ray is unobstructed
 };
 
 // A light sampled by random paths.
@@ -43,7 +43,7 @@ struct PathLight {
     std::shared_ptr<const Occluders> casters; // null = unshadowed
     std::variant<size_t, OtherLight> part;    // index of a light of the snapshot, or other light
     // Appends the paths of one ray of the batch.
-    std::function<void(const RayBatch&, size_t ray, const SeenFog&, std::vector<ScatterPath>&)> append;
+    std::function<void(const RayBatch&, size_t ray, const FogSampler&, std::vector<ScatterPath>&)> append;
 };
 
 // Wraps `scatter` to add these lights, attenuated by the surfaces and fog along the paths.
@@ -60,6 +60,6 @@ void append_fire_light(const Snapshot& snapshot, std::shared_ptr<const Scatterin
                        std::vector<PathLight>& lights);
 
 // Moves the area lights out of the snapshot: four distances per sample point, with up to two paths each.
-void take_faces(Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
-                std::vector<PathLight>& lights);
+void take_area_lights(Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
+                      std::vector<PathLight>& lights);
 }

@@ -31,14 +31,14 @@ void add_fluence_rows(Packet& packet) {
     const float* at = packet.scratch.cuts.at.data();
     const float* depths = packet.scratch.depth.data();
     Vec3s radiance = splat(vec3(0));
-    Floats asked = 0.0f;
-    for (size_t k = 0; k < static_cast<size_t>(packet.scratch.cuts.most); ++k) {
+    Floats evals = 0.0f;
+    for (size_t k = 0; k < static_cast<size_t>(packet.scratch.cuts.max_pieces); ++k) {
         const Floats low = load(at + 16 * k), high = load(at + 16 * (k + 1));
         const Floats before = load(depths + 16 * k), depth = load(depths + 16 * (k + 1)) - before;
         const Mask16 wanted = (depth > 0.0f) & (before * frame.style.view_depth < frame.opaque);
         if (!any(wanted)) continue;
-        asked = asked + select(wanted, 1.0f, 0.0f);
-        const Vec3s position = fused(direction, (low + high) * 0.5f, origin);
+        evals = evals + select(wanted, 1.0f, 0.0f);
+        const Vec3s position = fma(direction, (low + high) * 0.5f, origin);
         Floats weight = zero_unless(wanted, (high - low) * exp(-before * frame.style.view_depth) *
                                                 mean_transmittance(depth * frame.style.view_depth));
         if (frame.style.range < StyleSettings().range)
@@ -46,13 +46,13 @@ void add_fluence_rows(Packet& packet) {
         const float* extinction = packet.scratch.extinction.data() + 16 * media.size() * k;
         const Vec3s source = scattered_fluence(*frame.fluence, media, position, direction,
                                                [&](size_t m) HWY_ATTR { return load(extinction + 16 * m); });
-        radiance = fused(source, weight, radiance);
+        radiance = fma(source, weight, radiance);
     }
     alignas(64) float rgb[3][16], counts[16];
-    store(radiance.x, rgb[0]), store(radiance.y, rgb[1]), store(radiance.z, rgb[2]), store(asked, counts);
+    store(radiance.x, rgb[0]), store(radiance.y, rgb[1]), store(radiance.z, rgb[2]), store(evals, counts);
     for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
         packet.radiance[i] += vec3(rgb[0][i], rgb[1][i], rgb[2][i]);
-        packet.asked[i] += static_cast<int>(counts[i]);
+        packet.evals[i] += static_cast<int>(counts[i]);
     }
 }
 
@@ -73,10 +73,10 @@ void add_fluence_nodes(Packet& packet) {
             const double finest = std::max(1 / double(grid.cell), dimming / deepest_part);
             const int parts = static_cast<int>(std::min(std::ceil((high - low) * finest), max_parts));
             for (int part = 0; part < parts; ++part)
-                push_node(packet, any_light, i, k, low, high, (part + 0.5) / parts, 1.0 / parts);
+                push_node(packet, multiple_light, i, k, low, high, (part + 0.5) / parts, 1.0 / parts);
         }
     }
-    add_nodes(packet, any_light);
+    add_nodes(packet, multiple_light);
 }
 
 void add_fluence(Packet& packet) {

@@ -28,29 +28,29 @@ void add_full_steps(Packet& packet, size_t index) {
     for (size_t m = 0; m < media.size(); ++m) store(phase_value(media[m].optics.phase, cosine), phase[m].data());
 
     Vec3s radiance = splat(vec3(0));
-    Floats asked = 0.0f;
-    for (size_t k = 0; k < static_cast<size_t>(packet.scratch.cuts.most); ++k) {
+    Floats evals = 0.0f;
+    for (size_t k = 0; k < static_cast<size_t>(packet.scratch.cuts.max_pieces); ++k) {
         const Floats share = load(packet.scratch.whole.data() + 16 * k);
         const Mask16 wanted = share > 0.0f;
         if (!any(wanted)) continue;
-        asked = asked + select(wanted, 1.0f, 0.0f);
+        evals = evals + select(wanted, 1.0f, 0.0f);
         const Floats low = load(at + 16 * k), high = load(at + 16 * (k + 1));
-        const Vec3s position = fused(direction, (low + high) * 0.5f, origin);
+        const Vec3s position = fma(direction, (low + high) * 0.5f, origin);
         const Floats before = (load(depths + 16 * k) + load(depths + 16 * (k + 1))) * (0.5f * frame.style.view_depth);
         Floats weight = share * (high - low) * exp(-(before + light_depth16(frame.depths[index], position, wanted)));
         if (frame.style.range < StyleSettings().range)
             weight = weight * style_fade(frame.style, frame.camera, position);
         const float* extinction = packet.scratch.extinction.data() + 16 * media.size() * k;
         for (size_t m = 0; m < media.size(); ++m)
-            radiance = fused(albedo16(media[m].optics, position),
-                             weight * load(extinction + 16 * m) * load(phase[m].data()), radiance);
+            radiance = fma(albedo16(media[m].optics, position),
+                           weight * load(extinction + 16 * m) * load(phase[m].data()), radiance);
     }
     const vec3 color = light.intensity * light.volume_scale;
     alignas(64) float rgb[3][16], counts[16];
-    store(radiance.x, rgb[0]), store(radiance.y, rgb[1]), store(radiance.z, rgb[2]), store(asked, counts);
+    store(radiance.x, rgb[0]), store(radiance.y, rgb[1]), store(radiance.z, rgb[2]), store(evals, counts);
     for (size_t i = 0; i < packet.batch.rays.size(); ++i) {
         packet.radiance[i] += color * vec3(rgb[0][i], rgb[1][i], rgb[2][i]);
-        packet.asked[i] += static_cast<int>(counts[i]) * (1 + march_work(frame.depths[index]));
+        packet.evals[i] += static_cast<int>(counts[i]) * (1 + march_work(frame.depths[index]));
     }
 }
 }

@@ -101,10 +101,10 @@ void add_light(Packet& packet, size_t index) {
     Interval<double> reached[16];
     for (size_t i = 0; i < count; ++i) reached[i] = reach_of(packet, light, i);
     packet.spread = is_distant(light) ? Spread::length : Spread::angle;
-    const ShadowsBy by = frame.shadows[index].by;
-    packet.full_steps = frame.sampled && is_distant(light) && by != ShadowsBy::rays && !frame.shells;
-    if (packet.full_steps) scratch.whole.assign(16 * static_cast<size_t>(scratch.cuts.most), 0.0f);
-    if (by == ShadowsBy::slices)
+    const ShadowMethod by = frame.shadows[index].by;
+    packet.full_steps = frame.sampled && is_distant(light) && by != ShadowMethod::rays && !frame.shells;
+    if (packet.full_steps) scratch.whole.assign(16 * static_cast<size_t>(scratch.cuts.max_pieces), 0.0f);
+    if (by == ShadowMethod::slices)
         add_sliced(packet, index, reached);
     else
         add_cut_out(packet, index, reached);
@@ -115,7 +115,7 @@ void add_light(Packet& packet, size_t index) {
 // Optical depth of sampled fog at every cut, from the density at the midpoint of each step.
 void sample_depths(Packet& packet) {
     Scratch& scratch = packet.scratch;
-    const size_t steps = static_cast<size_t>(scratch.cuts.most);
+    const size_t steps = static_cast<size_t>(scratch.cuts.max_pieces);
     const std::vector<Medium>& media = packet.frame.snapshot.media;
     scratch.depth.resize(16 * (steps + 1)), scratch.extinction.resize(16 * steps * media.size());
     const Vec3s origin = Packet::rays(packet.origin), direction = Packet::rays(packet.direction);
@@ -123,14 +123,14 @@ void sample_depths(Packet& packet) {
     store(depth, scratch.depth.data());
     for (size_t k = 1; k <= steps; ++k) {
         const Floats to = load(scratch.cuts.at.data() + 16 * k);
-        const Vec3s point = fused(direction, (from + to) * 0.5f, origin);
+        const Vec3s point = fma(direction, (from + to) * 0.5f, origin);
         Floats extinction = 0.0f;
         for (size_t m = 0; m < media.size(); ++m) {
             const Floats own = density16(media[m], point) * grey_extinction(media[m].optics);
             store(own, scratch.extinction.data() + 16 * ((k - 1) * media.size() + m));
             extinction = extinction + own;
         }
-        depth = fused(extinction, to - from, depth), from = to;
+        depth = fma(extinction, to - from, depth), from = to;
         store(depth, scratch.depth.data() + 16 * k);
     }
 }
@@ -138,8 +138,8 @@ void sample_depths(Packet& packet) {
 // The total optical depth of each ray.
 Floats find_depths(const Packet& packet) {
     const RaySegments& cuts = packet.scratch.cuts;
-    if (packet.frame.sampled) return load(packet.scratch.depth.data() + 16 * static_cast<size_t>(cuts.most));
-    const float* end = cuts.at.data() + 16 * static_cast<size_t>(cuts.most);
+    if (packet.frame.sampled) return load(packet.scratch.depth.data() + 16 * static_cast<size_t>(cuts.max_pieces));
+    const float* end = cuts.at.data() + 16 * static_cast<size_t>(cuts.max_pieces);
     return closed_depth(packet.frame, {Packet::rays(packet.origin), Packet::rays(packet.direction), load(end)});
 }
 
@@ -157,7 +157,7 @@ vec3 even_glow(const SingleScattering& frame, int light) {
     return common;
 }
 
-void add_glow(Packet& packet, int light, const Floats& depth) {
+void add_other_light(Packet& packet, int light, const Floats& depth) {
     const SingleScattering& frame = packet.frame;
     const vec3 even = even_glow(frame, light);
     if (even == vec3(0)) return;
@@ -173,7 +173,7 @@ void add_glow(Packet& packet, int light, const Floats& depth) {
     for (size_t i = 0; i < count; ++i)
         for (int k = 0; k < cuts.pieces[i]; ++k) {
             const float* at = cuts.at.data() + 16 * static_cast<size_t>(k) + i;
-            if (counts(packet, i, k)) push_piece(packet, {light, i, k, at[0], at[16]});
+            if (has_visible_fog(packet, i, k)) push_piece(packet, {light, i, k, at[0], at[16]});
         }
     add_nodes(packet, light);
 }
@@ -204,17 +204,17 @@ void single_scattering_kernel(const SingleScattering& frame, const RayBatch& bat
         std::fill(packet.radiance, packet.radiance + 16, vec3(0));
     };
     if (batch.parts.empty()) {
-        add_glow(packet, no_light, depth);
+        add_other_light(packet, no_light, depth);
         add_fluence(packet);
         take_part(0);
     } else {
-        add_glow(packet, ambient_light, depth), take_part(batch.index_of(OtherLight::ambient));
-        add_glow(packet, emission_light, depth), take_part(batch.index_of(OtherLight::emission));
+        add_other_light(packet, ambient_light, depth), take_part(batch.index_of(OtherLight::ambient));
+        add_other_light(packet, emission_light, depth), take_part(batch.index_of(OtherLight::emission));
         add_fluence(packet), take_part(batch.index_of(OtherLight::multiple));
     }
     for (size_t light = 0; light < lights; ++light) add_light(packet, light), take_part(light);
     for (size_t i = 0; i < count; ++i)
-        results[i] = {total[i], transmittance[i], validity_of(frame, batch.rays[i]), packet.asked[i]};
+        results[i] = {total[i], transmittance[i], validity_of(frame, batch.rays[i]), packet.evals[i]};
 }
 }
 }

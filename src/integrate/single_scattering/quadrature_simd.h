@@ -54,7 +54,7 @@ double angular_parts(double from, double to, double widest) {
 std::span<const QuadratureNode> rule_for(const Packet& packet, const Piece& piece) {
     if (piece.light >= 0) {
         const size_t light = static_cast<size_t>(piece.light);
-        if (packet.frame.shadows[light].by == ShadowsBy::rays || packet.frame.filter_steps[light].sampled)
+        if (packet.frame.shadows[light].by == ShadowMethod::rays || packet.frame.filter_steps[light].sampled)
             return {&packet.jittered[piece.ray], 1};
     }
     const int more = piece.soft ? 2 : 0;
@@ -94,7 +94,7 @@ void push_piece(Packet& packet, const Piece& piece) {
 }
 
 // True if a piece between cuts contains visible fog.
-HWY_INLINE bool counts(const Packet& packet, size_t ray, int cut) {
+HWY_INLINE bool has_visible_fog(const Packet& packet, size_t ray, int cut) {
     if (!packet.frame.sampled) return true;
     const float* depth = packet.scratch.depth.data() + 16 * static_cast<size_t>(cut) + ray;
     return depth[0] * packet.frame.style.view_depth < packet.frame.opaque && depth[16] > depth[0];
@@ -108,7 +108,7 @@ bool in_soft_edge(const LightAlong& along, Interval<double> piece) {
 }
 
 HWY_INLINE void note_whole(Packet& packet, size_t ray, int cut) {
-    if (counts(packet, ray, cut))
+    if (has_visible_fog(packet, ray, cut))
         packet.scratch.whole[16 * static_cast<size_t>(cut) + ray] += static_cast<float>(packet.light_share);
 }
 
@@ -130,7 +130,7 @@ void push_lit(Packet& packet, int light, size_t ray, std::span<const Interval<do
                 const double high = std::min<double>(end, at[16 * (cut + 1)]);
                 if (packet.full_steps && low == at[16 * cut] && high == at[16 * (cut + 1)])
                     note_whole(packet, ray, cut);
-                else if (counts(packet, ray, cut))
+                else if (has_visible_fog(packet, ray, cut))
                     push_piece(packet, {light, ray, cut, low, high, soft});
                 low = high;
             }

@@ -24,7 +24,7 @@ void find_shadows(const SingleScattering& frame, size_t light, const RayBatch& b
                   const Interval<double> (&reached)[16], std::vector<ShadowCrossing>& crossings, int (&dark)[16]) {
     const LightShadows& caster = frame.shadows[light];
     crossings.clear(), std::fill(dark, dark + 16, 0);
-    if (caster.by != ShadowsBy::volumes) return;
+    if (caster.by != ShadowMethod::volumes) return;
     ShadowViewRays rays;
     rays.edges = frame.shells.has_value();
     for (size_t i = 0; i < batch.rays.size(); ++i) {

@@ -20,18 +20,18 @@ bool has_room_for_volumes(const View& view, const Snapshot& snapshot) {
     return has_room_for_views(snapshot, [&](const Light& light) { return is_soft(light) || view.camera.lens ? 0 : 1; });
 }
 
-ShadowsBy exact_shadows(const View& view, const Light& light, const Occluders& occluders, bool room) {
+ShadowMethod exact_shadows(const View& view, const Light& light, const Occluders& occluders, bool room) {
     const bool sliced = is_soft(light) || view.camera.lens || !room;
     const uint64_t most = sliced ? max_sliced : max_with_volumes;
-    if (occluders.has_alpha() || occluders.triangle_count() > most) return ShadowsBy::rays;
-    return sliced ? ShadowsBy::slices : ShadowsBy::volumes;
+    if (occluders.has_alpha() || occluders.triangle_count() > most) return ShadowMethod::rays;
+    return sliced ? ShadowMethod::slices : ShadowMethod::volumes;
 }
 
 FilterSteps filter_steps(const Light& light) {
     if (!light.filter) return {};
     const double detail = finest_detail(*light.filter), sets = gobo_nodes / 4;
     if (!light.filter->gobo) return {4 * detail, sets, false};
-    return whole_angle(light) <= sets * detail ? FilterSteps{detail, sets, false} : FilterSteps{1e-9, gobo_nodes, true};
+    return cone_angle(light) <= sets * detail ? FilterSteps{detail, sets, false} : FilterSteps{1e-9, gobo_nodes, true};
 }
 
 bool has_grid(const Snapshot& snapshot) {
@@ -39,7 +39,7 @@ bool has_grid(const Snapshot& snapshot) {
 }
 
 void add_lights(const View& view, LightTransmittance method, int light_resolution,
-                const std::function<ShadowsBy(const Light&)>& by, SingleScattering& frame) {
+                const std::function<ShadowMethod(const Light&)>& by, SingleScattering& frame) {
     frame.camera = view.camera;
     frame.lobe = lobe_cuts(frame.snapshot.media);
     frame.margin = view.filter == PixelFilter::center ? 0 : std::max(view.filter_radius - 0.5f, 0.0f);
@@ -52,8 +52,8 @@ void add_lights(const View& view, LightTransmittance method, int light_resolutio
         const auto& casters = shadow_casters(light, frame.snapshot);
         if (!casters) continue;
         shadows.by = by(light);
-        if (shadows.by == ShadowsBy::slices) shadows.slices = &casters->shadow_slices();
-        if (shadows.by != ShadowsBy::volumes) continue;
+        if (shadows.by == ShadowMethod::slices) shadows.slices = &casters->shadow_slices();
+        if (shadows.by != ShadowMethod::volumes) continue;
         shadows.volumes = cached_shadow_volumes(frame.snapshot, light);
         shadows.view = cached_shadow_view(frame.snapshot, light, view, frame.margin);
     }

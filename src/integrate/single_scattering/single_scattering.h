@@ -17,15 +17,15 @@
 namespace tyndall {
 // How a light's shadows along rays are computed: exactly, from its center (volumes) or from a sample point per ray
 // (slices); or at points on the ray, by shadow rays or a shadow map.
-enum class ShadowsBy { none, volumes, slices, rays, maps };
+enum class ShadowMethod { none, volumes, slices, rays, maps };
 
 // The fastest exact method; rays if surfaces have alpha or too many triangles. `room`: there is memory for the volumes
 // of all lights (has_room_for_volumes()).
-ShadowsBy exact_shadows(const View& view, const Light& light, const Occluders& occluders, bool room);
+ShadowMethod exact_shadows(const View& view, const Light& light, const Occluders& occluders, bool room);
 bool has_room_for_volumes(const View& view, const Snapshot& snapshot);
 
 struct LightShadows {
-    ShadowsBy by = ShadowsBy::none;
+    ShadowMethod by = ShadowMethod::none;
     std::shared_ptr<const ShadowView> view; // the volumes as seen from the camera
     std::shared_ptr<const ShadowVolumes> volumes;
     std::shared_ptr<const ShadowMap> map; // for `maps`
@@ -76,13 +76,13 @@ bool has_grid(const Snapshot& snapshot);
 
 // Fills the per-light data and the camera of the frame; `by` selects the shadow method of lights that cast shadows.
 void add_lights(const View& view, LightTransmittance method, int light_resolution,
-                const std::function<ShadowsBy(const Light&)>& by, SingleScattering& frame);
+                const std::function<ShadowMethod(const Light&)>& by, SingleScattering& frame);
 
 // Cuts along rays, between which the fog is smooth or is one step.
 struct RaySegments {
     std::vector<float> at; // [cut·16 + ray], ascending; the last is repeated if other rays have more
     int pieces[16];        // pieces between the cuts of each ray; 0 without fog
-    int most = 0;          // maximum over the rays
+    int max_pieces = 0;    // maximum over the rays
 
     float low(size_t ray) const { return at[ray]; }
     float high(size_t ray) const { return at[16 * static_cast<size_t>(pieces[ray]) + ray]; }

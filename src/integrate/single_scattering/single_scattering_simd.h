@@ -20,7 +20,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 constexpr int no_light = -1;       // emission and ambient light
-constexpr int any_light = -2;      // multiple scattering
+constexpr int multiple_light = -2; // multiple scattering
 constexpr int ambient_light = -3;  // the ambient part of no_light
 constexpr int emission_light = -4; // the emission part
 
@@ -64,7 +64,7 @@ struct Packet {
     // t of the point closest to the light, and its distance; 0 unless `spread` is angle
     alignas(64) float nearest[16] = {}, away[16] = {};
     vec3 radiance[16] = {}; // from the current light
-    int asked[16] = {};
+    int evals[16] = {};
 
     // Loads a vector per ray, or gathers it for the ray of each node.
     HWY_INLINE static Vec3s rays(const float (&v)[3][16]) { return {load(v[0]), load(v[1]), load(v[2])}; }
@@ -77,17 +77,17 @@ struct Packet {
 HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& position, const Vec3s& direction) {
     const SingleScattering& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
-    const LightSamples light_at = arriving(light, frame.cones[index], position);
+    const LightSamples light_at = arrival16(light, frame.cones[index], position);
     const Nodes& nodes = packet.scratch.nodes;
     Floats amount = light_at.amount;
-    if (frame.shadows[index].by == ShadowsBy::rays) {
+    if (frame.shadows[index].by == ShadowMethod::rays) {
         const auto key = [&](size_t lane) {
             const uint32_t id = packet.batch.ids[static_cast<size_t>(nodes.ray[lane])];
             return hash(id, static_cast<uint32_t>(nodes.cut[lane]), static_cast<uint32_t>(index));
         };
         const Mask16 wanted = (amount > 0.0f) & (load(nodes.weight) > 0.0f);
-        amount = amount * share_by_rays(*shadow_casters(light, frame.snapshot), light, position, light_at, wanted,
-                                        frame.light_points, key);
+        amount = amount * traced_visibility(*shadow_casters(light, frame.snapshot), light, position, light_at, wanted,
+                                            frame.light_points, key);
     }
     const std::vector<Medium>& media = frame.snapshot.media;
     const Vec3s towards = scattering(media, position, dot(light_at.to_light, direction), [&](size_t m) HWY_ATTR {
@@ -97,7 +97,7 @@ HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& posi
 }
 
 // Emission and scattered ambient light per meter, or one of them.
-HWY_INLINE Vec3s glow(const SingleScattering& frame, int light, const Vec3s& position) {
+HWY_INLINE Vec3s other_source(const SingleScattering& frame, int light, const Vec3s& position) {
     const vec3 ambient = light == emission_light ? vec3(0) : frame.snapshot.ambient;
     Vec3s sum = splat(vec3(0));
     for (const Medium& medium : frame.snapshot.media) {
@@ -105,24 +105,24 @@ HWY_INLINE Vec3s glow(const SingleScattering& frame, int light, const Vec3s& pos
         const vec3 emission = light == ambient_light ? vec3(0) : optics.emission.radiance;
         if (optics.albedo_field) {
             const Vec3s scattered = albedo16(optics, position) * splat(grey_extinction(optics) * ambient);
-            sum = fused(scattered + splat(emission), density16(medium, position), sum);
+            sum = fma(scattered + splat(emission), density16(medium, position), sum);
             continue;
         }
         const vec3 per_density = grey_extinction(optics) * optics.albedo * ambient + emission;
-        sum = fused(splat(per_density), density16(medium, position), sum);
+        sum = fma(splat(per_density), density16(medium, position), sum);
     }
     return sum;
 }
 
 // In-scattering of multiply scattered light per meter.
-HWY_INLINE Vec3s scattered_again(const SingleScattering& frame, const Vec3s& position, const Vec3s& direction) {
+HWY_INLINE Vec3s multiply_scattered(const SingleScattering& frame, const Vec3s& position, const Vec3s& direction) {
     const std::vector<Medium>& media = frame.snapshot.media;
     return scattered_fluence(*frame.fluence, media, position, direction, [&](size_t m) HWY_ATTR {
         return density16(media[m], position) * grey_extinction(media[m].optics);
     });
 }
 
-HWY_INLINE Floats closed_depth(const SingleScattering& frame, const LightPaths& paths) {
+HWY_INLINE Floats closed_depth(const SingleScattering& frame, const Segments16& paths) {
     Floats depth = 0.0f;
     for (const Medium& medium : frame.snapshot.media) depth = depth + analytic_depth16(medium, paths);
     return depth;
@@ -136,20 +136,20 @@ HWY_INLINE Placed place_nodes(const Packet& packet, const Nodes& nodes, const In
     const Floats low = load(nodes.low), high = load(nodes.high), share = load(nodes.share);
     const Floats weight = load(nodes.weight);
     if (packet.spread == Spread::points) return {low, weight};
-    if (packet.spread == Spread::length) return {fused(share, high - low, low), weight * (high - low)};
+    if (packet.spread == Spread::length) return {fma(share, high - low, low), weight * (high - low)};
     const EquiAngular16 turning({low, high}, gather(packet.away, ray));
     const Floats slope = turning.slope(share);
-    return {fused(slope, turning.height, gather(packet.nearest, ray)), turning.length(weight, slope)};
+    return {fma(slope, turning.height, gather(packet.nearest, ray)), turning.length(weight, slope)};
 }
 
 // Optical depth from the eye to the nodes, linear between cuts of sampled fog.
-HWY_INLINE Floats depth_at(const Packet& packet, const Nodes& nodes, const LightPaths& to_nodes) {
+HWY_INLINE Floats depth_at(const Packet& packet, const Nodes& nodes, const Segments16& to_nodes) {
     if (!packet.frame.sampled) return closed_depth(packet.frame, to_nodes);
     const float *at = packet.scratch.cuts.at.data(), *depth = packet.scratch.depth.data();
     const Ints cut = load(nodes.cut);
     const Floats before = gather(at, cut), depth_before = gather(depth, cut);
     const Floats share = (to_nodes.length - before) / max(gather(at + 16, cut) - before, 1e-12f);
-    return fused(gather(depth + 16, cut) - depth_before, max(min(share, 1.0f), 0.0f), depth_before);
+    return fma(gather(depth + 16, cut) - depth_before, max(min(share, 1.0f), 0.0f), depth_before);
 }
 
 // Evaluates the queued nodes and adds them to their rays.
@@ -164,19 +164,19 @@ void add_nodes(Packet& packet, int light) {
     const Ints ray = load(nodes.ray);
     const Placed placed = place_nodes(packet, nodes, ray);
     const Vec3s origin = Packet::rays(packet.origin, ray), direction = Packet::rays(packet.direction, ray);
-    const Vec3s position = fused(direction, placed.t, origin);
+    const Vec3s position = fma(direction, placed.t, origin);
     const Floats depth = depth_at(packet, nodes, {origin, direction, placed.t});
     Floats weight = placed.length * exp(-depth * frame.style.view_depth);
     if (frame.style.range < StyleSettings().range) weight = weight * style_fade(frame.style, frame.camera, position);
-    const Vec3s source = light >= 0           ? scattered(packet, static_cast<size_t>(light), position, direction)
-                         : light == any_light ? scattered_again(frame, position, direction)
-                                              : glow(frame, light, position);
+    const Vec3s source = light >= 0                ? scattered(packet, static_cast<size_t>(light), position, direction)
+                         : light == multiple_light ? multiply_scattered(frame, position, direction)
+                                                   : other_source(frame, light, position);
     alignas(64) float r[16], g[16], b[16];
     store(source.x * weight, r), store(source.y * weight, g), store(source.z * weight, b);
     const int work = 1 + (light >= 0 ? march_work(frame.depths[static_cast<size_t>(light)]) : 0);
     for (int i = 0; i < nodes.count; ++i) {
         packet.radiance[nodes.ray[i]] += vec3(r[i], g[i], b[i]);
-        packet.asked[nodes.ray[i]] += work;
+        packet.evals[nodes.ray[i]] += work;
     }
     nodes.count = 0;
 }

@@ -126,12 +126,12 @@ void render_references(ChartStage& stage, References& references, Chart& chart, 
     references.picture.progress = [&](double done) { plan.show(done, seconds); };
     const Reference reference = make_reference(references.picture, picture_samples(stage.job), files);
     const bool unlit = wants_unlit(stage.job);
-    stage.all = make_yardstick(reference, false);
-    if (unlit) stage.lights = make_yardstick(reference, true);
+    stage.all = make_metrics(reference, false);
+    if (unlit) stage.lights = make_metrics(reference, true);
     references.picture.progress = {};
     const Reference centers = make_reference(references.picture, center_samples(stage.job), files);
-    stage.centers_all = make_yardstick(centers, false);
-    if (unlit) stage.centers_lights = make_yardstick(centers, true);
+    stage.centers_all = make_metrics(centers, false);
+    if (unlit) stage.centers_lights = make_metrics(centers, true);
     for (const Shot& shot : references.sequence) {
         const bool again = !stage.sequence_all.empty() && shot.frame == references.sequence[0].frame;
         if (again) {
@@ -140,8 +140,8 @@ void render_references(ChartStage& stage, References& references, Chart& chart, 
             continue;
         }
         const Reference frame = make_reference(shot, center_samples(stage.job), files);
-        stage.sequence_all.push_back(make_yardstick(frame, false));
-        if (unlit) stage.sequence_lights.push_back(make_yardstick(frame, true));
+        stage.sequence_all.push_back(make_metrics(frame, false));
+        if (unlit) stage.sequence_lights.push_back(make_metrics(frame, true));
     }
 
     // Half the difference of the halves estimates the error of their mean.
@@ -189,14 +189,14 @@ std::vector<Task> plan_tasks(const ChartStage& stage, const std::string& referen
                              static_cast<double>(rungs.size()));
         Task task{rung, point_hash(stage, rung, references, files), {}, 0};
         task.kept = cached_point(stage.job.directory, rung, task.hash);
-        const LeftOut* before = chart.left_out.empty() ? nullptr : &chart.left_out.back();
+        const SkippedRung* before = chart.skipped.empty() ? nullptr : &chart.skipped.back();
         const bool goes_on = before && before->mode == rung.mode->name;
         if (!task.kept) task.seconds = goes_on ? before->seconds : expected_seconds(stage, rung);
         if (task.seconds <= stage.job.longest) {
             tasks.push_back(std::move(task));
             continue;
         }
-        chart.left_out.push_back({std::string(rung.mode->name), rows_of(settings_of(rung)), rung.place, task.seconds});
+        chart.skipped.push_back({std::string(rung.mode->name), rows_of(settings_of(rung)), rung.place, task.seconds});
         if (control.remark && !goes_on)
             control.remark(formatted("%s.%d and the settings after it are skipped: an image would take about %.2g s",
                                      std::string(rung.mode->name).c_str(), rung.place, task.seconds));
@@ -233,7 +233,7 @@ Chart make_chart(const Scene& scene, const ChartJob& asked, const ChartControl& 
     plan.finish(first);
 
     RenderPlan shown;
-    if (measures_exposure(scene, job.render))
+    if (needs_auto_exposure(scene, job.render))
         shown.exposure = automatic_exposure(scene, job.render, 1, &stage.snapshot);
     const Display display = display_of(scene, job.render, shown, job.frame);
     for (const Task& task : tasks) {

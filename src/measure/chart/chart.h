@@ -42,7 +42,7 @@ const std::vector<ChartField>& chart_fields();
 double value_of(const ChartField& field, const ChartPoint& point);
 
 std::string point_name(const ChartPoint& point); // "march.3"
-bool is_look(const ChartPoint& point);           // of an artistic mode; it has a gain
+bool is_artistic(const ChartPoint& point);       // of an artistic mode; it has a gain
 
 struct ChartJob {
     RenderRequest render; // scene file, camera, image size, settings that rungs do not change
@@ -57,7 +57,7 @@ struct ChartJob {
 };
 
 // A rung that was left out, and the least seconds its image would have taken.
-struct LeftOut {
+struct SkippedRung {
     std::string mode, settings; // as in ChartPoint
     int rung = 0;
     double seconds = 0;
@@ -81,7 +81,7 @@ struct Chart {
     double reference_flip = 0;              // between the halves: FLIP of noise alone
     std::vector<ChartedMode> modes;
     std::vector<ChartPoint> points; // by mode, from fast to accurate
-    std::vector<LeftOut> left_out;
+    std::vector<SkippedRung> skipped;
     int kept = 0; // points reused from an earlier run
     double seconds = 0;
 };
@@ -106,7 +106,7 @@ double seconds_of(const ChartPoint& point, FrameTime time);
 double error_of(const ChartPoint& point, ErrorOf what);
 
 // Whether a point is Pareto-optimal: no other is at least as fast and as accurate, and better in one of the two.
-bool unbeaten(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what);
+bool is_pareto(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what);
 void mark_best(std::vector<ChartPoint>& points);
 
 // A point's files, relative to the directory: its numbers, its image and error map, and thumbnails of both.

@@ -61,7 +61,7 @@ double bias(const Image<vec3>& picture, const std::array<const Image<vec3>*, 2>&
 }
 }
 
-ReferenceMetrics make_yardstick(const Reference& reference, bool lights_only) {
+ReferenceMetrics make_metrics(const Reference& reference, bool lights_only) {
     ReferenceMetrics result;
     result.halves = reference.halves;
     result.shown_mean = mean_of(reference.halves);

@@ -25,7 +25,7 @@ struct ReferenceMetrics {
 };
 
 // `lights_only`: for images without ambient light, emission and background.
-ReferenceMetrics make_yardstick(const Reference& reference, bool lights_only);
+ReferenceMetrics make_metrics(const Reference& reference, bool lights_only);
 
 // The image plus the light it was measured without.
 Image<vec3> whole(const ReferenceMetrics& reference_metrics, const Image<vec3>& color);

@@ -57,7 +57,7 @@ std::string point_name(const ChartPoint& point) {
     return point.mode + "." + std::to_string(static_cast<int>(point.rung));
 }
 
-bool is_look(const ChartPoint& point) { return find_mode(point.mode).accuracy == Accuracy::artistic; }
+bool is_artistic(const ChartPoint& point) { return find_mode(point.mode).accuracy == Accuracy::artistic; }
 
 PointFiles files_of(const ChartPoint& point) {
     const std::filesystem::path values = "points", pictures = "pictures";
@@ -75,7 +75,7 @@ double error_of(const ChartPoint& point, ErrorOf what) {
     return std::max(point.fog_error, point.fog_uncertainty);
 }
 
-bool unbeaten(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what) {
+bool is_pareto(const ChartPoint& point, std::span<const ChartPoint> points, FrameTime time, ErrorOf what) {
     const double seconds = seconds_of(point, time), error = error_of(point, what);
     if (!std::isfinite(error)) return false;
     return std::ranges::none_of(points, [&](const ChartPoint& other) {
@@ -86,9 +86,9 @@ bool unbeaten(const ChartPoint& point, std::span<const ChartPoint> points, Frame
 
 void mark_best(std::vector<ChartPoint>& points) {
     for (ChartPoint& point : points) {
-        point.best_1 = unbeaten(point, points, FrameTime::single, ErrorOf::worse);
-        point.best_100 = unbeaten(point, points, FrameTime::sequence, ErrorOf::worse);
-        point.best_fog = unbeaten(point, points, FrameTime::single, ErrorOf::fog);
+        point.best_1 = is_pareto(point, points, FrameTime::single, ErrorOf::worse);
+        point.best_100 = is_pareto(point, points, FrameTime::sequence, ErrorOf::worse);
+        point.best_fog = is_pareto(point, points, FrameTime::single, ErrorOf::fog);
     }
 }
 }

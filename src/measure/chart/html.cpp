@@ -39,14 +39,14 @@ std::string point_words(const ChartPoint& point) {
 std::string answer_cell(const std::optional<ChartPoint>& point, FrameTime time, ErrorOf what) {
     if (!point) return element("td class=\"words\"", "none of these");
     return element("td class=\"words\" title=\"" + xml_text(point->settings) + "\"",
-                   "<b>" + point_words(*point) + "</b>: " + share_words(error_of(*point, what)) + " in " +
-                       seconds_words(seconds_of(*point, time)));
+                   "<b>" + point_words(*point) + "</b>: " + percent_label(error_of(*point, what)) + " in " +
+                       seconds_label(seconds_of(*point, time)));
 }
 
 std::string advice_table(const Chart& chart) {
     std::string rows;
     for (const Advice& advice : advice_of(chart))
-        rows += "<tr>" + element("td", need_words(advice)) +
+        rows += "<tr>" + element("td", goal_text(advice)) +
                 answer_cell(advice.single, FrameTime::single, ErrorOf::worse) +
                 answer_cell(advice.sequence, FrameTime::sequence, ErrorOf::worse) +
                 answer_cell(advice.fog, FrameTime::single, ErrorOf::fog) + "</tr>\n";
@@ -57,11 +57,11 @@ std::string advice_table(const Chart& chart) {
            rows + "</tbody></table>\n";
 }
 
-std::string left_out(const Chart& chart) {
-    if (chart.left_out.empty()) return {};
+std::string skipped(const Chart& chart) {
+    if (chart.skipped.empty()) return {};
     std::string list;
-    for (const LeftOut& rung : chart.left_out) list += element("li", xml_text(left_out_words(rung)));
-    return element("p", xml_text(left_out_reason(chart)) + ":") + element("ul class=\"quiet\"", list);
+    for (const SkippedRung& rung : chart.skipped) list += element("li", xml_text(skipped_text(rung)));
+    return element("p", xml_text(skip_reason(chart)) + ":") + element("ul class=\"quiet\"", list);
 }
 
 // --- all numbers ---------------------------------------------------------------------------------------------------
@@ -74,26 +74,26 @@ const std::vector<Column>& columns() {
     using P = ChartPoint;
     static const std::vector<Column> all{
         {"rays per pixel", [](const P& p) { return number_words(p.samples); }},
-        {"set-up", [](const P& p) { return seconds_words(p.setup_seconds); }},
-        {"frame", [](const P& p) { return seconds_words(p.frame_seconds); }},
+        {"set-up", [](const P& p) { return seconds_label(p.setup_seconds); }},
+        {"frame", [](const P& p) { return seconds_label(p.frame_seconds); }},
         {"fastest to slowest",
-         [](const P& p) { return seconds_words(p.frame_fastest) + " to " + seconds_words(p.frame_slowest); }},
-        {"single frame", [](const P& p) { return seconds_words(p.seconds_1); }},
-        {"each of 100", [](const P& p) { return seconds_words(p.seconds_100); }},
-        {"processor time", [](const P& p) { return seconds_words(p.cpu_seconds); }},
-        {"memory", [](const P& p) { return bytes_words(p.memory_bytes); }},
-        {"error E", [](const P& p) { return share_words(p.errors.error); }},
-        {"uncertainty", [](const P& p) { return share_words(p.errors.uncertainty); }},
-        {"rmse_rel", [](const P& p) { return share_words(p.errors.rmse); }},
-        {"rmse_rel of the fog light", [](const P& p) { return share_words(p.errors.inscatter_rmse); }},
-        {"fog light at pixel centers", [](const P& p) { return share_words(p.fog_error); }},
-        {"bias", [](const P& p) { return share_words(p.errors.bias); }},
+         [](const P& p) { return seconds_label(p.frame_fastest) + " to " + seconds_label(p.frame_slowest); }},
+        {"single frame", [](const P& p) { return seconds_label(p.seconds_1); }},
+        {"each of 100", [](const P& p) { return seconds_label(p.seconds_100); }},
+        {"processor time", [](const P& p) { return seconds_label(p.cpu_seconds); }},
+        {"memory", [](const P& p) { return bytes_label(p.memory_bytes); }},
+        {"error E", [](const P& p) { return percent_label(p.errors.error); }},
+        {"uncertainty", [](const P& p) { return percent_label(p.errors.uncertainty); }},
+        {"rmse_rel", [](const P& p) { return percent_label(p.errors.rmse); }},
+        {"rmse_rel of the fog light", [](const P& p) { return percent_label(p.errors.inscatter_rmse); }},
+        {"fog light at pixel centers", [](const P& p) { return percent_label(p.fog_error); }},
+        {"bias", [](const P& p) { return percent_label(p.errors.bias); }},
         {"relMSE", [](const P& p) { return number_words(p.errors.rel_mse); }},
         {"FLIP", [](const P& p) { return number_words(p.errors.flip); }},
-        {"flicker", [](const P& p) { return share_words(p.flicker); }},
+        {"flicker", [](const P& p) { return percent_label(p.flicker); }},
         {"fitted gain", [](const P& p) { return number_words(p.gain); }},
-        {"E with gain", [](const P& p) { return share_words(p.fitted.error); }},
-        {"fog light at pixel centers with gain", [](const P& p) { return share_words(p.fitted_fog_error); }},
+        {"E with gain", [](const P& p) { return percent_label(p.fitted.error); }},
+        {"fog light at pixel centers with gain", [](const P& p) { return percent_label(p.fitted_fog_error); }},
         {"FLIP with gain", [](const P& p) { return number_words(p.fitted.flip); }},
         {"unbeaten", [](const P& p) { return std::string(p.best_1 > 0 ? "yes" : "-"); }},
     };
@@ -134,7 +134,7 @@ std::string gallery(const Chart& chart) {
             html += "<div class=\"rung\" data-of=\"" + point_name(point) + "\">" +
                     image(directory / files.small_picture, point_words(point)) +
                     image(directory / files.small_errors, "error of " + point_words(point)) + point_words(point) +
-                    ": " + share_words(point.errors.error) + ", " + seconds_words(point.seconds_1) + "</div>\n";
+                    ": " + percent_label(point.errors.error) + ", " + seconds_label(point.seconds_1) + "</div>\n";
         }
     }
     return html;
@@ -150,8 +150,8 @@ std::string summary(const Chart& chart) {
 
 std::string reference_words(const ReferenceSamples& reference) {
     if (reference.count > 0) return std::to_string(reference.count / 2) + " rays per pixel each";
-    return "as many rays as a noise of " + share_words(reference.noise) + " needs, but at most " +
-           seconds_words(reference.seconds) + " each";
+    return "as many rays as a noise of " + percent_label(reference.noise) + " needs, but at most " +
+           seconds_label(reference.seconds) + " each";
 }
 
 std::string method(const Chart& chart) {
@@ -159,7 +159,7 @@ std::string method(const Chart& chart) {
     std::vector<std::string> lines{
         "Reference: <code>march</code> with exact shadows and light followed through the fog, two independent halves "
         "of " +
-            reference_words(job.reference) + "; their noise (" + share_words(chart.reference_noise) +
+            reference_words(job.reference) + "; their noise (" + percent_label(chart.reference_noise) +
             " of the mean) is subtracted from the errors. FLIP still includes it: " +
             number_words(chart.reference_flip) + " between the halves.",
         "Error E: root of the mean squared difference / mean of the reference, of the image or of the light of its "
@@ -194,7 +194,7 @@ std::string chart_html(const Chart& chart) {
                        "<link rel=\"icon\" href=\"data:,\">\n<style>" +
                        std::string(chart_page_style) + std::string(chart_svg_style) + "</style></head><body>\n";
     html += element("h1", title) + element("p", summary(chart)) + chart_svg(chart, FrameTime::single, ErrorOf::worse);
-    html += element("h2", "What to use when") + advice_table(chart) + left_out(chart);
+    html += element("h2", "What to use when") + advice_table(chart) + skipped(chart);
     html += element("h2", "The technique alone") +
             element("p class=\"quiet\"",
                     "The light of the fog at pixel centers: edges of surfaces and lamps inside pixels, which need many "

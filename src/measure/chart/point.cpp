@@ -70,7 +70,7 @@ Layers timed_run(const ChartStage& stage, const Mode& mode, const Settings& sett
     non_finite = static_cast<double>(stats.non_finite);
 
     Snapshot next = seen_by(mode, stage.next);
-    next.cache_before = now.cache;
+    next.previous_cache = now.cache;
     const View next_view = view_for(stage, settings, size, stage.next_frame);
     const double start = steady_seconds();
     const Prepared prepared = prepare_frame(mode, next_view, next, settings, nullptr);
@@ -104,7 +104,7 @@ void measure_centers(const ChartStage& stage, const Mode& mode, Settings setting
     const ReferenceMetrics& reference_metrics = lights_only(mode) ? stage.centers_lights : stage.centers_all;
     const ChartErrors errors = chart_errors(reference_metrics, picture);
     point.fog_error = errors.inscatter_rmse, point.fog_uncertainty = errors.inscatter_uncertainty;
-    if (is_look(point))
+    if (is_artistic(point))
         point.fitted_fog_error =
             chart_errors(reference_metrics, with_gain(picture, fitted_gain(reference_metrics, picture))).inscatter_rmse;
 }
@@ -191,7 +191,7 @@ MeasuredPoint measure_point(const ChartStage& stage, const ChartRung& rung,
 
     const ReferenceMetrics& reference_metrics = lights_only(mode) ? stage.lights : stage.all;
     point.errors = chart_errors(reference_metrics, picture);
-    if (is_look(point)) {
+    if (is_artistic(point)) {
         point.gain = fitted_gain(reference_metrics, picture);
         point.fitted = chart_errors(reference_metrics, with_gain(picture, point.gain));
     }

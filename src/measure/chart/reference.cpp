@@ -27,7 +27,7 @@ const ExrOptions exact_colors{{"inscatter"}, true};
 RenderRequest half_request(const Shot& shot, ReferenceSamples samples, int half) {
     RenderRequest request = shot.request;
     request.mode = main_mode().name, request.quality = Quality::reference;
-    request.settings = truth_of(request.settings);
+    request.settings = truth_settings(request.settings);
     if (samples.count > 0) request.settings.pixel.samples = std::max(samples.count / 2, 1);
     if (samples.centers) request.settings.pixel.filter = PixelFilter::center;
     request.seed = half_seeds[half];
@@ -102,14 +102,14 @@ ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderReq
     if (!shot.directory.empty()) {
         RenderRequest named = request;
         named.output = file.string();
-        Provenance provenance = provenance_of(shot.scene, named, plan_as_asked(request), view, hash, stats);
+        Provenance provenance = provenance_of(shot.scene, named, requested_plan(request), view, hash, stats);
         write_exr(file, layers, provenance, exact_colors);
     }
     return {std::move(layers.color), std::move(layers.inscatter)};
 }
 
 std::string half_hash(const Shot& shot, const RenderRequest& request, ReferenceSamples samples, FileHashes& files) {
-    const std::string hash = frame_hash(shot.scene, request, plan_as_asked(request),
+    const std::string hash = frame_hash(shot.scene, request, requested_plan(request),
                                         view_of(shot.scene, request, request.settings, shot.frame), files);
     return samples.count > 0 ? hash : content_hash(hash + formatted("%.9g %.9g", samples.noise, samples.seconds));
 }
@@ -117,7 +117,7 @@ std::string half_hash(const Shot& shot, const RenderRequest& request, ReferenceS
 
 Snapshot fresh(const Snapshot& snapshot) {
     Snapshot result = snapshot;
-    result.cache = std::make_shared<FrameCache>(), result.cache_before = nullptr;
+    result.cache = std::make_shared<FrameCache>(), result.previous_cache = nullptr;
     return result;
 }
 
@@ -128,7 +128,7 @@ std::string reference_hash(const Shot& shot, ReferenceSamples samples, FileHashe
 
 double reference_seconds(const Shot& shot, ReferenceSamples samples) {
     const std::shared_ptr<const Choice> choice = choice_for(shot, fresh(shot.snapshot), goal_of(shot, samples));
-    const Measured& measured = choice->measured;
+    const Measurement& measured = choice->measured;
     if (samples.count > 0) return samples.count * choice->pilot->truth_seconds();
     const double needed = std::pow(measured.sample.value / (2 * samples.noise * samples.noise), 1 / choice->power);
     const double quick = std::min(measured.prepare_seconds + needed * measured.sample_seconds, samples.seconds);

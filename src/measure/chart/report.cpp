@@ -33,7 +33,7 @@ Json advice_json(const Chart& chart) {
 }
 
 Json left_out_json(const Chart& chart) {
-    return json_list(chart.left_out, [](const LeftOut& rung) {
+    return json_list(chart.skipped, [](const SkippedRung& rung) {
         return json_object({{"mode", rung.mode},
                             {"rung", rung.rung},
                             {"settings", rung.settings},
@@ -70,13 +70,13 @@ std::vector<Advice> advice_of(const Chart& chart) {
     return result;
 }
 
-std::string seconds_words(double seconds) {
+std::string seconds_label(double seconds) {
     if (seconds < 0.00995) return formatted("%.1f ms", 1000 * seconds);
     if (seconds < 0.9995) return formatted("%.0f ms", 1000 * seconds);
     return formatted(seconds < 9.95 ? "%.1f s" : "%.0f s", seconds);
 }
 
-std::string share_words(double share) {
+std::string percent_label(double share) {
     if (!std::isfinite(share)) return "-";
     const double percent = 100 * share, size = std::abs(percent);
     return formatted(size < 0.0995  ? "%.3f %%"
@@ -86,14 +86,14 @@ std::string share_words(double share) {
                      percent);
 }
 
-std::string bytes_words(double bytes) {
+std::string bytes_label(double bytes) {
     if (!std::isfinite(bytes)) return "-";
     return formatted(bytes < 9.95e6 ? "%.1f MB" : "%.0f MB", bytes / 1e6);
 }
 
-std::string need_words(const Advice& advice) {
-    if (advice.error > 0) return "an error of at most " + share_words(advice.error);
-    return "at most " + seconds_words(advice.seconds) + " per frame";
+std::string goal_text(const Advice& advice) {
+    if (advice.error > 0) return "an error of at most " + percent_label(advice.error);
+    return "at most " + seconds_label(advice.seconds) + " per frame";
 }
 
 std::string chart_csv(const Chart& chart) {
@@ -136,10 +136,10 @@ std::string chart_json(const Chart& chart) {
          {"points", json_list(chart.points, json_of_point)}});
 }
 
-std::string left_out_reason(const Chart& chart) {
-    if (chart.left_out.empty()) return {};
-    std::string text = count_text(chart.left_out.size(), "setting") + " skipped: an image would take more than " +
-                       seconds_words(chart.job.longest) + " (--longest)";
+std::string skip_reason(const Chart& chart) {
+    if (chart.skipped.empty()) return {};
+    std::string text = count_text(chart.skipped.size(), "setting") + " skipped: an image would take more than " +
+                       seconds_label(chart.job.longest) + " (--longest)";
     if (was_loaded(chart))
         text +=
             formatted("; other processes were running (load %.1f on %d threads), without them more settings may fit",
@@ -147,24 +147,24 @@ std::string left_out_reason(const Chart& chart) {
     return text;
 }
 
-std::string left_out_words(const LeftOut& rung) {
-    return rung.mode + " " + std::to_string(rung.rung) + ", " + seconds_words(rung.seconds) +
+std::string skipped_text(const SkippedRung& rung) {
+    return rung.mode + " " + std::to_string(rung.rung) + ", " + seconds_label(rung.seconds) +
            " or more: " + rung.settings;
 }
 
 std::string chart_text(const Chart& chart) {
     std::string text;
     const auto words = [](const std::optional<ChartPoint>& point, ErrorOf what) {
-        return point ? point_name(*point) + ", " + share_words(error_of(*point, what)) + " in " +
-                           seconds_words(point->seconds_1)
+        return point ? point_name(*point) + ", " + percent_label(error_of(*point, what)) + " in " +
+                           seconds_label(point->seconds_1)
                      : std::string("none of these");
     };
     for (const Advice& advice : advice_of(chart))
-        text += need_words(advice) + ": " + words(advice.single, ErrorOf::worse) + "; for the technique alone " +
+        text += goal_text(advice) + ": " + words(advice.single, ErrorOf::worse) + "; for the technique alone " +
                 words(advice.fog, ErrorOf::fog) + "\n";
-    if (chart.left_out.empty()) return text;
-    text += left_out_reason(chart) + ":\n";
-    for (const LeftOut& rung : chart.left_out) text += "  " + left_out_words(rung) + "\n";
+    if (chart.skipped.empty()) return text;
+    text += skip_reason(chart) + ":\n";
+    for (const SkippedRung& rung : chart.skipped) text += "  " + skipped_text(rung) + "\n";
     return text;
 }
 }

@@ -10,8 +10,8 @@ std::string chart_json(const Chart& chart);
 std::string chart_text(const Chart& chart); // a few lines: what to use when, and what was left out
 
 // Why settings were left out; empty when none was.
-std::string left_out_reason(const Chart& chart);
-std::string left_out_words(const LeftOut& rung); // "march 5, 1.2 s or more: pixel.samples=64"
+std::string skip_reason(const Chart& chart);
+std::string skipped_text(const SkippedRung& rung); // "march 5, 1.2 s or more: pixel.samples=64"
 
 // A page with inline images, read from the chart's directory. Throws Error (unreadable).
 std::string chart_html(const Chart& chart);
@@ -28,10 +28,10 @@ struct Advice {
 std::vector<Advice> advice_of(const Chart& chart);
 
 // For people: "12 ms", "3.4 s"; "0.82 %", "120 %"; "12 MB".
-std::string seconds_words(double seconds);
-std::string share_words(double share);
-std::string bytes_words(double bytes);
-std::string need_words(const Advice& advice); // "an error of at most 5 %"
+std::string seconds_label(double seconds);
+std::string percent_label(double share);
+std::string bytes_label(double bytes);
+std::string goal_text(const Advice& advice); // "an error of at most 5 %"
 
 // A mode's color, distinguishable with color vision deficiency (Okabe and Ito 2008), and its marker shape.
 struct MarkStyle {

@@ -79,7 +79,7 @@ Frame frame_of(const Chart& chart, FrameTime time, ErrorOf what) {
         if (!drawn(point)) continue;
         seconds.push_back(frame.seconds(point));
         errors.push_back(frame.value(point, false));
-        if (is_look(point)) errors.push_back(frame.value(point, true));
+        if (is_artistic(point)) errors.push_back(frame.value(point, true));
     }
     frame.broken = std::erase_if(errors, [](double error) { return error > max_error; }) > 0;
     frame.x = axis_over(seconds, left, right);
@@ -200,7 +200,7 @@ std::string colored(const std::string& mode, bool fitted, Place at) {
 std::string mark(const Frame& frame, const ChartPoint& point, Place at, bool fitted) {
     const std::string id = point_name(point) + (fitted ? ".fitted" : "");
     const std::string words =
-        id + ": " + share_words(frame.error(point, fitted)) + ", " + seconds_words(frame.seconds(point));
+        id + ": " + percent_label(frame.error(point, fitted)) + ", " + seconds_label(frame.seconds(point));
     return "<g class='mark' data-id='" + id + "' tabindex='0' role='img' aria-label='" + words + "'>" +
            colored(point.mode, fitted, at) + "</g>\n";
 }
@@ -220,7 +220,7 @@ void note_strip(const Frame& frame, const std::string& mode, Drawing& drawing) {
         if (point.mode == mode && drawn(point) && frame.in_strip(point, false))
             low = std::min(low, frame.value(point, false)), high = std::max(high, frame.value(point, false));
     if (high == 0) return;
-    const std::string from = share_words(low), to = share_words(high);
+    const std::string from = percent_label(low), to = percent_label(high);
     drawing.over.push_back(mode + " " + from + (from == to ? "" : " to " + to));
 }
 
@@ -245,7 +245,7 @@ void add_series(const Frame& frame, const std::string& mode, bool fitted, Drawin
 std::string front(const Frame& frame) {
     std::vector<Place> best;
     for (const ChartPoint& point : frame.chart.points)
-        if (drawn(point) && unbeaten(point, frame.chart.points, frame.time, frame.what))
+        if (drawn(point) && is_pareto(point, frame.chart.points, frame.time, frame.what))
             best.push_back(frame.place(point, false));
     std::ranges::sort(best, {}, &Place::x);
     if (best.empty()) return {};

@@ -34,12 +34,12 @@ struct MediumOnRay {
     double depth = 0; // optical depth
 };
 
-enum class Lighting { full, partial, shadowed, out_of_reach };
+enum class LightState { full, partial, shadowed, out_of_reach };
 
 // A stretch of the ray on which one light has the same state.
 struct LightStretch {
     double low = 0, high = 0;
-    Lighting state = Lighting::full;
+    LightState state = LightState::full;
     double share = 0;                  // of the light's points that are visible, on average
     std::vector<std::string> blockers; // what hides the others, most frequent first
 };
@@ -76,7 +76,7 @@ struct RayStep {
 };
 
 // A mode's result for the ray.
-struct Answer {
+struct ModeResult {
     std::string mode;
     Accuracy accuracy = Accuracy::artistic;
     vec3 inscatter{0}; // fog light
@@ -85,16 +85,16 @@ struct Answer {
     int steps = 0;
     int samples = 1;                    // averaged; more than one if the mode is noisy
     std::optional<vec3> standard_error; // of the fog light, if the mode is noisy
-    ivec2 picture{0};                   // size of the image rendered, if the mode works on whole images
+    ivec2 image_size{0};                // size of the image rendered, if the mode works on whole images
     Limitations limitations;            // of the mode, those that concern this ray
     std::string remark;                 // how it was obtained, where that matters
     bool finite = true;
 };
 
 // Relative error of the luminance of an answer's fog light: 0.1 = 10 % too bright. Infinite where there should be none.
-double difference(const Answer& answer, const Answer& reference);
+double difference(const ModeResult& result, const ModeResult& reference);
 
-struct RayStory {
+struct RayReport {
     ivec2 pixel{0}, size{0};
     vec3 origin{0}, direction{0, 0, -1};
     dvec3 world_origin{0}; // world position that `origin` is relative to
@@ -108,8 +108,8 @@ struct RayStory {
     vec3 glow{0};                   // emission and ambient light of all fog, at the eye
     std::vector<RayStep> steps;     // ascending; none where there is no fog
     std::vector<LightOnRay> lights; // of the snapshot
-    Answer reference;               // exact single scattering
-    std::vector<Answer> answers;
+    ModeResult reference;           // exact single scattering
+    std::vector<ModeResult> results;
 };
 
 struct ExplainOptions {
@@ -124,8 +124,8 @@ struct ExplainOptions {
 // Follows the ray through the center of a pixel of the view's full image. Modes are evaluated as in an image with one
 // sample at the center of each pixel; of the view, only camera, size, jitter, seed and frame matter. Throws Error
 // (internal) when cancelled.
-RayStory explain_ray(const View& view, const Snapshot& snapshot, const Settings& settings, ivec2 pixel,
-                     const ExplainOptions& options);
+RayReport explain_ray(const View& view, const Snapshot& snapshot, const Settings& settings, ivec2 pixel,
+                      const ExplainOptions& options);
 
-std::string_view name_of(Lighting state);
+std::string_view name_of(LightState state);
 }

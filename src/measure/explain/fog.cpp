@@ -30,7 +30,7 @@ struct Column {
     }
 };
 
-struct FogOnPart {
+struct FogOnSegment {
     FogPieces fog;
     std::vector<Column> columns; // of each medium
 
@@ -43,7 +43,7 @@ struct FogOnPart {
 };
 
 // Ends of steps: equally spaced in distance, in optical depth and in angle around lamps; and at shadow boundaries.
-std::vector<double> step_ends(const FogOnPart& on, std::span<const LightOnPart> lights, int count) {
+std::vector<double> step_ends(const FogOnSegment& on, std::span<const LightOnSegment> lights, int count) {
     const Interval<double> range = on.range();
     std::vector<double> ends{range.low, range.high};
     for (int i = 1; i < count; ++i) ends.push_back(range.low + range.length() * i / count);
@@ -54,11 +54,11 @@ std::vector<double> step_ends(const FogOnPart& on, std::span<const LightOnPart> 
             (on.depth_to(0.5 * (low + high)) < depth * i / count ? low : high) = 0.5 * (low + high);
         ends.push_back(0.5 * (low + high));
     }
-    for (const LightOnPart& light : lights) {
+    for (const LightOnSegment& light : lights) {
         double first = range.high, last = range.low;
         for (const LightStretch& stretch : light.lit) {
             ends.push_back(stretch.low), ends.push_back(stretch.high);
-            if (stretch.state == Lighting::out_of_reach) continue;
+            if (stretch.state == LightState::out_of_reach) continue;
             first = std::min(first, std::max(stretch.low, range.low));
             last = std::max(last, std::min(stretch.high, range.high));
         }
@@ -81,14 +81,14 @@ struct Place {
     double middle() const { return 0.5 * (low + high); }
 };
 
-RayStep step_at(const RayScene& scene, const RayPart& part, const FogOnPart& on, const Place& place) {
+RayStep step_at(const RayScene& scene, const RaySegment& segment, const FogOnSegment& on, const Place& place) {
     const StyleSettings& style = scene.truth.style;
     const double length = place.high - place.low;
     RayStep step;
-    step.low = part.start + place.low, step.high = part.start + place.high;
+    step.low = segment.start + place.low, step.high = segment.start + place.high;
     for (size_t m = 0; m < place.densities.size(); ++m) {
         const Optics& optics = scene.fog.media[m].optics;
-        const vec3 middle = part.ray.at(static_cast<float>(place.middle()));
+        const vec3 middle = segment.ray.at(static_cast<float>(place.middle()));
         step.extinction += place.densities[m] * grey_extinction(optics);
         step.glow += only_emits(optics) ? emission_at(scene.fog.media[m], middle)
                                         : static_cast<float>(place.densities[m]) *
@@ -97,9 +97,9 @@ RayStep step_at(const RayScene& scene, const RayPart& part, const FogOnPart& on,
     }
     const double before = on.depth_to(place.low), across = style.view_depth * step.extinction * length;
     const bool fades = style.range < StyleSettings{}.range;
-    const float away = eye_distance(scene.view.camera, part.ray.at(static_cast<float>(place.middle())));
-    const double seen = part.through * (fades ? style_fade(style, away) : 1);
-    step.depth = part.depth + on.depth_to(place.middle());
+    const float away = eye_distance(scene.view.camera, segment.ray.at(static_cast<float>(place.middle())));
+    const double seen = segment.throughput * (fades ? style_fade(style, away) : 1);
+    step.depth = segment.depth + on.depth_to(place.middle());
     step.to_eye = seen * std::exp(-style.view_depth * on.depth_to(place.middle()));
     step.reach =
         seen * std::exp(-style.view_depth * before) * length * (across > 0 ? -std::expm1(-across) / across : 1);
@@ -135,19 +135,19 @@ std::vector<LightAtStep> dimmed(const LightDepth& depth, const Ray& ray, std::sp
 }
 
 // Light scattered towards the eye in the middle of a step, if all of the light is visible.
-vec3 scattered(const RayScene& scene, const LightAlong& along, const RayPart& part, const Place& place) {
+vec3 scattered(const RayScene& scene, const LightAlong& along, const RaySegment& segment, const Place& place) {
     const LightSamplesAt arriving = arriving_at(along, place.middle());
-    const double cosine = glm::dot(arriving.to_light, dvec3(part.ray.direction));
+    const double cosine = glm::dot(arriving.to_light, dvec3(segment.ray.direction));
     dvec3 sum(0);
     for (size_t m = 0; m < place.densities.size(); ++m) {
         const Optics& optics = scene.fog.media[m].optics;
         sum += place.densities[m] * grey_extinction(optics) * phase_value_of<double>(optics.phase, cosine) *
-               dvec3(albedo_at(optics, part.ray.at(static_cast<float>(place.middle()))));
+               dvec3(albedo_at(optics, segment.ray.at(static_cast<float>(place.middle()))));
     }
     return vec3(arriving.amount * sum * arriving.tint * dvec3(along.light->intensity * along.light->volume_scale));
 }
 
-std::vector<Place> places_of(const FogOnPart& on, std::span<const LightOnPart> lights, int count) {
+std::vector<Place> places_of(const FogOnSegment& on, std::span<const LightOnSegment> lights, int count) {
     const std::vector<double> ends = step_ends(on, lights, count);
     std::vector<Place> places;
     for (size_t i = 0; i + 1 < ends.size(); ++i) {
@@ -166,36 +166,36 @@ LightStretch moved(LightStretch stretch, double by) {
 }
 }
 
-void append_fog(const RayScene& scene, const RayPart& part, RayStory& story) {
-    FogOnPart on;
-    find_fog(part.ray, scene.fog.media, scene.truth.march.min_transmittance, on.fog);
+void append_fog(const RayScene& scene, const RaySegment& segment, RayReport& report) {
+    FogOnSegment on;
+    find_fog(segment.ray, scene.fog.media, scene.truth.march.min_transmittance, on.fog);
     for (size_t m = 0; m < on.fog.media; ++m) on.columns.emplace_back(on.fog.densities[m]);
-    std::vector<LightOnPart> lights;
-    for (size_t l = 0; l < story.lights.size(); ++l) lights.push_back(light_on(scene, part, l));
+    std::vector<LightOnSegment> lights;
+    for (size_t l = 0; l < report.lights.size(); ++l) lights.push_back(light_on(scene, segment, l));
 
-    const size_t first = story.steps.size();
+    const size_t first = report.steps.size();
     std::vector<Place> places;
     if (!on.fog.pieces.empty()) places = places_of(on, lights, scene.options.steps);
     for (const Place& place : places) {
-        story.steps.push_back(step_at(scene, part, on, place));
-        story.glow += static_cast<float>(story.steps.back().reach) * story.steps.back().glow;
+        report.steps.push_back(step_at(scene, segment, on, place));
+        report.glow += static_cast<float>(report.steps.back().reach) * report.steps.back().glow;
     }
     for (size_t l = 0; l < lights.size(); ++l) {
-        std::vector<LightAtStep> at = dimmed(scene.depths[l], part.ray, places);
+        std::vector<LightAtStep> at = dimmed(scene.depths[l], segment.ray, places);
         for (size_t i = 0; i < places.size(); ++i)
             at[i].share = share_over(lights[l].shares, places[i].low, places[i].high);
-        if (story.lights[l].sampled) add_alpha_shadows(scene, part, first, story, lights[l], at);
+        if (report.lights[l].sampled) add_alpha_shadows(scene, segment, first, report, lights[l], at);
         for (size_t i = 0; i < places.size(); ++i)
             if (at[i].share > 0)
                 at[i].scattered =
-                    at[i].share * at[i].transmittance * scattered(scene, lights[l].along, part, places[i]);
-        name_blockers(scene, part, lights[l]);
+                    at[i].share * at[i].transmittance * scattered(scene, lights[l].along, segment, places[i]);
+        name_blockers(scene, segment, lights[l]);
         for (const LightStretch& stretch : lights[l].lit)
-            story.lights[l].stretches.push_back(moved(stretch, part.start));
-        story.lights[l].at.insert(story.lights[l].at.end(), at.begin(), at.end());
+            report.lights[l].stretches.push_back(moved(stretch, segment.start));
+        report.lights[l].at.insert(report.lights[l].at.end(), at.begin(), at.end());
     }
     for (size_t m = 0; m < on.columns.size(); ++m)
-        story.media[m].depth += on.fog.extinction[m] * on.columns[m].to(part.ray.t_max);
-    story.depth += on.depth_to(part.ray.t_max);
+        report.media[m].depth += on.fog.extinction[m] * on.columns[m].to(segment.ray.t_max);
+    report.depth += on.depth_to(segment.ray.t_max);
 }
 }

@@ -20,8 +20,8 @@ struct Change {
     int seen = 0, reached = 0;
 };
 
-Lighting lighting_of(int seen, int points) {
-    return seen == 0 ? Lighting::shadowed : seen < points ? Lighting::partial : Lighting::full;
+LightState lighting_of(int seen, int points) {
+    return seen == 0 ? LightState::shadowed : seen < points ? LightState::partial : LightState::full;
 }
 
 std::vector<LightStretch> shares_of(std::vector<Change> changes, int points) {
@@ -31,7 +31,7 @@ std::vector<LightStretch> shares_of(std::vector<Change> changes, int points) {
     for (size_t i = 0; i + 1 < changes.size(); ++i) {
         seen += changes[i].seen, reached += changes[i].reached;
         if (!(changes[i].t < changes[i + 1].t)) continue;
-        const Lighting state = reached > 0 ? lighting_of(seen, points) : Lighting::out_of_reach;
+        const LightState state = reached > 0 ? lighting_of(seen, points) : LightState::out_of_reach;
         shares.push_back({changes[i].t, changes[i + 1].t, state, reached > 0 ? double(seen) / points : 0.0, {}});
     }
     return shares;
@@ -87,31 +87,31 @@ int blocking_instance(const Occluders& occluders, Ray ray) {
 dvec3 point_at(const Ray& ray, double t) { return dvec3(ray.origin) + t * dvec3(ray.direction); }
 }
 
-LightOnPart light_on(const RayScene& scene, const RayPart& part, size_t index) {
+LightOnSegment light_on(const RayScene& scene, const RaySegment& segment, size_t index) {
     const Light& light = scene.fog.lights[index];
     const uint32_t count = scene.points_of(light);
-    LightOnPart on;
+    LightOnSegment on;
     on.light = index;
-    for (uint32_t k = 0; k < count; ++k) on.points.push_back(light_point(part.batch, 0, light, index, k, count));
+    for (uint32_t k = 0; k < count; ++k) on.points.push_back(light_point(segment.batch, 0, light, index, k, count));
 
-    std::vector<Change> changes{{0, 0, 0}, {part.ray.t_max, 0, 0}};
-    find_light(light, on.points[0], part.ray, nullptr, scene.fog.media, on.along);
+    std::vector<Change> changes{{0, 0, 0}, {segment.ray.t_max, 0, 0}};
+    find_light(light, on.points[0], segment.ray, nullptr, scene.fog.media, on.along);
     for (const Interval<double>& reached : on.along.lit)
         changes.push_back({reached.low, 0, 1}), changes.push_back({reached.high, 0, -1});
     const ShadowSlices* slices = scene.casters(index) ? &scene.casters(index)->shadow_slices() : nullptr;
     LightAlong along;
     for (const LightPoint& point : on.points) {
-        find_light(light, point, part.ray, slices, scene.fog.media, along);
+        find_light(light, point, segment.ray, slices, scene.fog.media, along);
         for (const Interval<double>& lit : along.lit)
             changes.push_back({lit.low, 1, 0}), changes.push_back({lit.high, -1, 0});
     }
     on.shares = shares_of(std::move(changes), static_cast<int>(count));
-    on.lit = joined(on.shares, shortest * part.ray.t_max);
+    on.lit = joined(on.shares, shortest * segment.ray.t_max);
     return on;
 }
 
-void add_alpha_shadows(const RayScene& scene, const RayPart& part, size_t first_step, const RayStory& story,
-                       LightOnPart& on, std::vector<LightAtStep>& at) {
+void add_alpha_shadows(const RayScene& scene, const RaySegment& segment, size_t first_step, const RayReport& report,
+                       LightOnSegment& on, std::vector<LightAtStep>& at) {
     std::vector<LightStretch> seen;
     size_t stretch = 0;
     double done = 0; // distance up to which `seen` covers the part
@@ -127,37 +127,37 @@ void add_alpha_shadows(const RayScene& scene, const RayPart& part, size_t first_
     };
     for (size_t i = 0; i < at.size(); ++i) {
         if (!(at[i].share > 0)) continue;
-        const RayStep& step = story.steps[first_step + i];
+        const RayStep& step = report.steps[first_step + i];
         const size_t points = std::min(on.points.size(), blocker_points);
         float through = 0;
         for (size_t p = 0; p < points; ++p)
             through += scene.casters(on.light)->transmission(
-                ray_to(on.points[p], point_at(part.ray, step.middle() - part.start)), 0);
+                ray_to(on.points[p], point_at(segment.ray, step.middle() - segment.start)), 0);
         through /= static_cast<float>(points);
         if (!(through < 1)) continue;
         at[i].share *= through;
-        copy_to(step.low - part.start);
-        seen.push_back({step.low - part.start,
-                        step.high - part.start,
-                        through > 0 ? Lighting::partial : Lighting::shadowed,
+        copy_to(step.low - segment.start);
+        seen.push_back({step.low - segment.start,
+                        step.high - segment.start,
+                        through > 0 ? LightState::partial : LightState::shadowed,
                         at[i].share,
                         {}});
-        done = step.high - part.start;
+        done = step.high - segment.start;
         while (stretch < on.lit.size() && on.lit[stretch].high <= done) ++stretch;
     }
-    copy_to(part.ray.t_max);
-    on.lit = joined(seen, shortest * part.ray.t_max);
+    copy_to(segment.ray.t_max);
+    on.lit = joined(seen, shortest * segment.ray.t_max);
 }
 
-void name_blockers(const RayScene& scene, const RayPart& part, LightOnPart& on) {
+void name_blockers(const RayScene& scene, const RaySegment& segment, LightOnSegment& on) {
     for (LightStretch& stretch : on.lit) {
-        if (stretch.state == Lighting::full || stretch.state == Lighting::out_of_reach) continue;
+        if (stretch.state == LightState::full || stretch.state == LightState::out_of_reach) continue;
         std::vector<std::pair<int, std::string>> counts; // minus the number of hits, and the name
         for (int i = 0; i < blocker_places; ++i) {
             const double t = stretch.low + (stretch.high - stretch.low) * (i + 0.5) / blocker_places;
             for (size_t p = 0; p < std::min(on.points.size(), blocker_points); ++p) {
                 const int instance =
-                    blocking_instance(*scene.casters(on.light), ray_to(on.points[p], point_at(part.ray, t)));
+                    blocking_instance(*scene.casters(on.light), ray_to(on.points[p], point_at(segment.ray, t)));
                 if (instance < 0) continue;
                 const std::string name = name_of_instance(scene.snapshot, instance);
                 const auto known = std::ranges::find(counts, name, &std::pair<int, std::string>::second);

@@ -19,14 +19,14 @@ FrameTracer tracer_of(const Mode& mode, const RayScene& scene, const View& view,
     return frame_tracer(mode, view, scene.snapshot, scene.settings, prepared);
 }
 
-void take(const PixelSample& sample, Answer& answer) {
-    answer.inscatter = sample.inscatter, answer.color = sample.color();
-    answer.transmittance = sample.transmittance, answer.validity = sample.validity, answer.steps = sample.steps;
-    answer.finite = sample.finite();
+void take(const PixelSample& sample, ModeResult& result) {
+    result.inscatter = sample.inscatter, result.color = sample.color();
+    result.transmittance = sample.transmittance, result.validity = sample.validity, result.steps = sample.steps;
+    result.finite = sample.finite();
 }
 
 // Traces the pixel together with its tile: a mode may let neighbors share steps.
-void ask_tile(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answer) {
+void ask_tile(const Mode& mode, const RayScene& scene, ivec2 pixel, ModeResult& result) {
     const Prepared prepared = prepare_frame(mode, scene.view, scene.snapshot, scene.settings, nullptr);
     const ivec2 corner = pixel / tile_side * tile_side, end = glm::min(corner + tile_side, scene.view.size);
     ivec2 pixels[16];
@@ -38,13 +38,13 @@ void ask_tile(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answ
             pixels[count++] = {x, y};
         }
     trace_samples(tracer_of(mode, scene, scene.view, prepared), {pixels, count}, 0, {samples, count}, {});
-    take(samples[own], answer);
+    take(samples[own], result);
 }
 
 // The mean of many samples, and its standard error from independent batches.
-void ask_often(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answer) {
+void ask_often(const Mode& mode, const RayScene& scene, ivec2 pixel, ModeResult& result) {
     View view = scene.view;
-    view.pixel_samples = answer.samples = scene.options.noisy_samples, view.batches = noisy_batches;
+    view.pixel_samples = result.samples = scene.options.noisy_samples, view.batches = noisy_batches;
     const Prepared prepared = prepare_frame(mode, view, scene.snapshot, scene.settings, nullptr);
     const FrameTracer tracer = tracer_of(mode, scene, view, prepared);
     std::vector<PixelSample> samples(static_cast<size_t>(view.pixel_samples));
@@ -57,22 +57,22 @@ void ask_often(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& ans
     double steps = 0;
     const int batch_size = view.pixel_samples / noisy_batches;
     for (size_t s = 0; s < samples.size(); ++s) {
-        answer.finite = answer.finite && samples[s].finite();
+        result.finite = result.finite && samples[s].finite();
         steps += samples[s].steps;
         sum.add(samples[s]);
         if ((s + 1) % static_cast<size_t>(batch_size) == 0) sum.end_batch(batch_size);
     }
     const float count = static_cast<float>(view.pixel_samples);
-    answer.inscatter = vec3(sum.inscatter_mean.mean), answer.color = sum.mean_color();
-    answer.transmittance = sum.transmittance / count, answer.validity = sum.validity / count;
-    answer.steps = static_cast<int>(std::lround(steps / view.pixel_samples));
-    answer.standard_error = glm::sqrt(sum.inscatter_mean.variance());
-    answer.remark = formatted("mean of %d samples, +- its standard error", answer.samples);
-    if (scene.settings.path.orders > 1) answer.remark += "; light may scatter more than once, the reference's does not";
+    result.inscatter = vec3(sum.inscatter_mean.mean), result.color = sum.mean_color();
+    result.transmittance = sum.transmittance / count, result.validity = sum.validity / count;
+    result.steps = static_cast<int>(std::lround(steps / view.pixel_samples));
+    result.standard_error = glm::sqrt(sum.inscatter_mean.variance());
+    result.remark = formatted("mean of %d samples, +- its standard error", result.samples);
+    if (scene.settings.path.orders > 1) result.remark += "; light may scatter more than once, the reference's does not";
 }
 
 // Renders the whole image, reduced in size if it is large.
-void ask_picture(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& answer) {
+void ask_picture(const Mode& mode, const RayScene& scene, ivec2 pixel, ModeResult& result) {
     View view = scene.view;
     int shrink = 1;
     while (view.size.x / shrink * (view.size.y / shrink) > largest_picture) ++shrink;
@@ -82,36 +82,36 @@ void ask_picture(const Mode& mode, const RayScene& scene, ivec2 pixel, Answer& a
     FrameOptions options;
     options.cancel = scene.options.cancel;
     const Layers layers = render_frame(mode, view, scene.snapshot, scene.settings, options, stats);
-    answer.inscatter = layers.inscatter.at(p.x, p.y), answer.color = layers.color.at(p.x, p.y);
-    answer.transmittance = layers.transmittance.at(p.x, p.y), answer.validity = layers.validity.at(p.x, p.y);
-    answer.picture = view.size;
-    answer.remark = formatted("taken from a whole image of %dx%d", view.size.x, view.size.y);
-    answer.finite = is_finite(answer.inscatter) && is_finite(answer.color);
+    result.inscatter = layers.inscatter.at(p.x, p.y), result.color = layers.color.at(p.x, p.y);
+    result.transmittance = layers.transmittance.at(p.x, p.y), result.validity = layers.validity.at(p.x, p.y);
+    result.image_size = view.size;
+    result.remark = formatted("taken from a whole image of %dx%d", view.size.x, view.size.y);
+    result.finite = is_finite(result.inscatter) && is_finite(result.color);
 }
 
 // Whether the limitation's light reaches the ray, or its medium lies on it.
-bool concerns(const Limitation& limitation, const RayStory& story) {
-    const auto reaches = [](const LightStretch& stretch) { return stretch.state != Lighting::out_of_reach; };
+bool concerns(const Limitation& limitation, const RayReport& report) {
+    const auto reaches = [](const LightStretch& stretch) { return stretch.state != LightState::out_of_reach; };
     if (limitation.subject == Subject::light)
-        return std::ranges::any_of(story.lights, [&](const LightOnRay& on) {
+        return std::ranges::any_of(report.lights, [&](const LightOnRay& on) {
             return on.name == limitation.name && std::ranges::any_of(on.stretches, reaches);
         });
     if (limitation.subject == Subject::medium)
-        return std::ranges::any_of(story.media,
+        return std::ranges::any_of(report.media,
                                    [&](const MediumOnRay& on) { return on.name == limitation.name && on.depth > 0; });
     return true;
 }
 }
 
-Answer answer_of(const Mode& mode, const RayScene& scene, const RayStory& story) {
-    Answer answer;
-    answer.mode = mode.name, answer.accuracy = mode.accuracy;
+ModeResult mode_result(const Mode& mode, const RayScene& scene, const RayReport& report) {
+    ModeResult result;
+    result.mode = mode.name, result.accuracy = mode.accuracy;
     for (Limitation& limitation : mode.limitations(scene.view, scene.snapshot, scene.settings))
-        if (concerns(limitation, story)) answer.limitations.push_back(std::move(limitation));
+        if (concerns(limitation, report)) result.limitations.push_back(std::move(limitation));
     if (mode.surfaces == Surfaces::post)
-        ask_picture(mode, scene, story.pixel, answer);
+        ask_picture(mode, scene, report.pixel, result);
     else
-        (error_is_noise(mode) ? ask_often : ask_tile)(mode, scene, story.pixel, answer);
-    return answer;
+        (is_unbiased(mode) ? ask_often : ask_tile)(mode, scene, report.pixel, result);
+    return result;
 }
 }

@@ -24,16 +24,16 @@ struct RayScene {
 };
 
 // The ray from the eye, or from a BLEND surface, to the next surface.
-struct RayPart {
+struct RaySegment {
     const Ray& ray;
     const RayBatch& batch; // of this ray alone
     double start = 0;      // meters from the eye
     double depth = 0;      // optical depth before it
-    double through = 1;    // share of the light at its start that arrives at the eye
+    double throughput = 1; // share of the light at its start that arrives at the eye
 };
 
 // A light along one part of the ray.
-struct LightOnPart {
+struct LightOnSegment {
     size_t light = 0;                 // of the snapshot
     LightAlong along;                 // of its first point
     std::vector<LightPoint> points;   // sampled for its shadows
@@ -41,20 +41,20 @@ struct LightOnPart {
     std::vector<LightStretch> lit;    // the same, with partly lit neighbors merged
 };
 
-LightOnPart light_on(const RayScene& scene, const RayPart& part, size_t light);
+LightOnSegment light_on(const RayScene& scene, const RaySegment& segment, size_t light);
 
 // Multiplies the shares of the part's steps, which start at `first_step` in the story, by the light that surfaces with
 // alpha transmit, and divides on.lit accordingly.
-void add_alpha_shadows(const RayScene& scene, const RayPart& part, size_t first_step, const RayStory& story,
-                       LightOnPart& on, std::vector<LightAtStep>& at);
+void add_alpha_shadows(const RayScene& scene, const RaySegment& segment, size_t first_step, const RayReport& report,
+                       LightOnSegment& on, std::vector<LightAtStep>& at);
 
 // Names what blocks the light on stretches that are shadowed or partly lit.
-void name_blockers(const RayScene& scene, const RayPart& part, LightOnPart& on);
+void name_blockers(const RayScene& scene, const RaySegment& segment, LightOnSegment& on);
 
 // Appends the part's steps, with what each light contributes and where it shines.
-void append_fog(const RayScene& scene, const RayPart& part, RayStory& story);
+void append_fog(const RayScene& scene, const RaySegment& segment, RayReport& report);
 
 std::string name_of_instance(const Snapshot& snapshot, int instance);
 
-Answer answer_of(const Mode& mode, const RayScene& scene, const RayStory& story);
+ModeResult mode_result(const Mode& mode, const RayScene& scene, const RayReport& report);
 }

@@ -10,5 +10,5 @@ inline constexpr const char* ink = "#222";
 }
 
 // Draws bars for the modes from `top` down; returns their lower end.
-double draw_modes(const RayStory& story, double top, Svg& svg);
+double draw_modes(const RayReport& report, double top, Svg& svg);
 }

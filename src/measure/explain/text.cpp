@@ -19,38 +19,38 @@ std::string surface_text(const SurfaceOnRay& surface) {
         text + ": radiance " + color_text(surface.radiance) + ", " + percent(surface.share) + " of it arrives", 13);
 }
 
-std::string ray_text(const RayStory& story) {
+std::string ray_text(const RayReport& report) {
     std::string text = "The ray\n";
-    text +=
-        "  from " + place_text(story.origin, story.world_origin) + " m towards " + color_text(story.direction) + "\n";
-    if (story.steps.empty()) {
+    text += "  from " + place_text(report.origin, report.world_origin) + " m towards " + color_text(report.direction) +
+            "\n";
+    if (report.steps.empty()) {
         text += "  no fog along it\n";
     } else {
         std::string media;
-        for (const MediumOnRay& medium : story.media)
+        for (const MediumOnRay& medium : report.media)
             if (medium.depth > 0)
                 media += (media.empty() ? "" : " + ") + printable(medium.name, 40) + " " + digits(medium.depth);
-        text += wrapped("  fog from " + digits(story.steps.front().low) + " to " + digits(story.steps.back().high) +
-                            " m, optical depth " + digits(story.depth) + " (" + media +
-                            "): " + percent(story.reference.transmittance) + " of the light behind it gets through",
+        text += wrapped("  fog from " + digits(report.steps.front().low) + " to " + digits(report.steps.back().high) +
+                            " m, optical depth " + digits(report.depth) + " (" + media +
+                            "): " + percent(report.reference.transmittance) + " of the light behind it gets through",
                         6);
     }
-    for (const SurfaceOnRay& surface : story.surfaces) text += surface_text(surface);
-    if (!story.hits)
-        text += "     behind    background: radiance " + color_text(story.background) + ", " +
-                percent(story.background_share) + " of it arrives\n";
+    for (const SurfaceOnRay& surface : report.surfaces) text += surface_text(surface);
+    if (!report.hits)
+        text += "     behind    background: radiance " + color_text(report.background) + ", " +
+                percent(report.background_share) + " of it arrives\n";
     return text;
 }
 
 // Meters of the ray on which a light has this state.
-double length_of(const LightOnRay& light, Lighting state) {
+double length_of(const LightOnRay& light, LightState state) {
     double sum = 0;
     for (const LightStretch& stretch : light.stretches)
         if (stretch.state == state) sum += stretch.high - stretch.low;
     return sum;
 }
 
-std::string lights_text(const RayStory& story) {
+std::string lights_text(const RayReport& report) {
     std::string text = "Light that reaches the camera, nits (other: ambient light, emission, background)\n";
     text += formatted("  %-16s %-9s %29s %29s\n", "", "", "scattered by fog", "reflected by surfaces");
     text += formatted("  %-16s %-9s %s %s %8s\n", "", "", channels().c_str(), channels().c_str(), "lit, m");
@@ -60,31 +60,31 @@ std::string lights_text(const RayStory& story) {
                           color_columns(fog).c_str(), color_columns(surfaces).c_str(), lit.c_str());
     };
     vec3 of_lights(0);
-    for (const LightOnRay& light : story.lights) {
+    for (const LightOnRay& light : report.lights) {
         row(light.name, traits_of(light.kind).name, light.fog, light.surfaces,
-            digits(length_of(light, Lighting::full)));
+            digits(length_of(light, LightState::full)));
         of_lights += light.surfaces;
     }
-    const vec3 behind = story.reference.color - story.reference.inscatter;
-    row("other", "", story.glow, glm::max(behind - of_lights, vec3(0)), "");
-    row("all", "", story.reference.inscatter, behind, "");
+    const vec3 behind = report.reference.color - report.reference.inscatter;
+    row("other", "", report.glow, glm::max(behind - of_lights, vec3(0)), "");
+    row("all", "", report.reference.inscatter, behind, "");
     return text;
 }
 
-std::string stretches_text(const RayStory& story) {
+std::string stretches_text(const RayReport& report) {
     std::string text = "Where each light shines on the ray\n";
-    for (const LightOnRay& light : story.lights) {
+    for (const LightOnRay& light : report.lights) {
         std::string name = cut(printable(light.name, 40), 16);
         for (const LightStretch& stretch : light.stretches) {
             std::string line = formatted("  %-16s %9.3f %9.3f m   ", name.c_str(), stretch.low, stretch.high);
             line += name_of(stretch.state);
             if (!stretch.blockers.empty()) line += " of " + printable(joined(stretch.blockers, ", "), 200);
-            if (stretch.state == Lighting::partial) line += ", " + percent(stretch.share) + " lit";
+            if (stretch.state == LightState::partial) line += ", " + percent(stretch.share) + " lit";
             text += wrapped(line, 45);
             name.clear();
         }
     }
-    if (!story.steps.empty() && std::ranges::any_of(story.lights, &LightOnRay::sampled))
+    if (!report.steps.empty() && std::ranges::any_of(report.lights, &LightOnRay::sampled))
         text += "  (shadows of MASK and BLEND surfaces are sampled, as in the steps)\n";
     return text;
 }
@@ -127,7 +127,7 @@ std::string percent(double share) {
                      value);
 }
 
-std::string difference_text(const Answer& answer, const Answer& reference) {
+std::string difference_text(const ModeResult& answer, const ModeResult& reference) {
     const double off = difference(answer, reference);
     if (std::isinf(off)) return "none expected";
     const auto text = [](double value, const char* sign) {
@@ -140,23 +140,23 @@ std::string difference_text(const Answer& answer, const Answer& reference) {
     return result + " %";
 }
 
-vec3 added_by(const RayStory& story, size_t step) {
-    vec3 sum = story.steps[step].glow;
-    for (const LightOnRay& light : story.lights) sum += light.at[step].scattered;
-    return static_cast<float>(story.steps[step].reach) * sum;
+vec3 added_by(const RayReport& report, size_t step) {
+    vec3 sum = report.steps[step].glow;
+    for (const LightOnRay& light : report.lights) sum += light.at[step].scattered;
+    return static_cast<float>(report.steps[step].reach) * sum;
 }
 
-std::string title_line(const RayStory& story, const StoryTitle& title) {
+std::string title_line(const RayReport& report, const ReportTitle& title) {
     std::string text = printable(title.scene, 60) + formatted(", frame %d", title.frame);
     if (!title.camera.empty()) text += ", camera " + printable(title.camera, 40);
-    return text + formatted(", pixel %d,%d of %dx%d, ", story.pixel.x, story.pixel.y, story.size.x, story.size.y) +
+    return text + formatted(", pixel %d,%d of %dx%d, ", report.pixel.x, report.pixel.y, report.size.x, report.size.y) +
            title.quality;
 }
 
-std::string explain_text(const RayStory& story, const StoryTitle& title) {
-    std::string text = wrapped(title_line(story, title), 2);
-    for (const std::string& part : {ray_text(story), lights_text(story), stretches_text(story), steps_text(story),
-                                    modes_text(story), limitations_text(story)})
+std::string explain_text(const RayReport& report, const ReportTitle& title) {
+    std::string text = wrapped(title_line(report, title), 2);
+    for (const std::string& part : {ray_text(report), lights_text(report), stretches_text(report), steps_text(report),
+                                    modes_text(report), limitations_text(report)})
         if (!part.empty()) text += "\n" + part;
     // Removes the blanks that empty cells leave at the ends of lines.
     std::string result;

@@ -8,11 +8,11 @@
 
 namespace tyndall {
 namespace {
-std::string answer_text(const Answer& answer, const Answer* reference) {
-    const std::string off = !answer.finite ? "not finite" : reference ? difference_text(answer, *reference) : "";
-    return formatted("  %-14s %s %19s %9s %8s %8d\n", answer.mode.c_str(), color_columns(answer.inscatter).c_str(),
-                     off.c_str(), percent(answer.transmittance).c_str(), percent(answer.validity).c_str(),
-                     answer.steps);
+std::string answer_text(const ModeResult& result, const ModeResult* reference) {
+    const std::string off = !result.finite ? "not finite" : reference ? difference_text(result, *reference) : "";
+    return formatted("  %-14s %s %19s %9s %8s %8d\n", result.mode.c_str(), color_columns(result.inscatter).c_str(),
+                     off.c_str(), percent(result.transmittance).c_str(), percent(result.validity).c_str(),
+                     result.steps);
 }
 
 // A limitation of one or more lights or media, and the modes that share it.
@@ -22,29 +22,29 @@ struct Said {
 };
 }
 
-std::string limitations_text(const RayStory& story) {
+std::string limitations_text(const RayReport& report) {
     std::vector<Said> all;
-    for (const Answer& answer : story.answers)
-        for (LimitationGroup& group : groups_of(answer.limitations)) {
+    for (const ModeResult& result : report.results)
+        for (LimitationGroup& group : groups_of(result.limitations)) {
             if (group.worst.severity == Severity::info) continue;
             const auto known = std::ranges::find(all, group, &Said::group);
             if (known != all.end())
-                known->modes.push_back(answer.mode);
+                known->modes.push_back(result.mode);
             else
-                all.push_back({{answer.mode}, std::move(group)});
+                all.push_back({{result.mode}, std::move(group)});
         }
     std::string text;
     for (const Said& said : all) text += wrapped("  " + joined(said.modes, ", ") + ": " + line_of(said.group), 6);
     return text.empty() ? text : "Limitations of the modes on this ray\n" + text;
 }
 
-std::string modes_text(const RayStory& story) {
+std::string modes_text(const RayReport& report) {
     std::string text = "What each mode gives: fog light of one sample at the pixel's center, nits\n";
     text += formatted("  %-14s %s %19s %9s %8s %8s\n", "", channels().c_str(), "error", "through", "valid", "steps");
-    text += answer_text(story.reference, nullptr);
-    for (const Answer& answer : story.answers) text += answer_text(answer, &story.reference);
-    for (const Answer& answer : story.answers)
-        if (!answer.remark.empty()) text += wrapped(formatted("  %-14s ", answer.mode.c_str()) + answer.remark, 17);
+    text += answer_text(report.reference, nullptr);
+    for (const ModeResult& result : report.results) text += answer_text(result, &report.reference);
+    for (const ModeResult& result : report.results)
+        if (!result.remark.empty()) text += wrapped(formatted("  %-14s ", result.mode.c_str()) + result.remark, 17);
     return text;
 }
 }

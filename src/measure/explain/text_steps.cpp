@@ -18,34 +18,34 @@ struct Row {
     std::vector<double> share, to_light; // of each light, times meters
 };
 
-Row row_of(const RayStory& story, double low, double high) {
+Row row_of(const RayReport& report, double low, double high) {
     Row row{low,
             high,
             0,
             0,
             dvec3(0),
             dvec3(0),
-            std::vector<double>(story.lights.size()),
-            std::vector<double>(story.lights.size())};
-    for (size_t i = 0; i < story.steps.size(); ++i) {
-        const RayStep& step = story.steps[i];
+            std::vector<double>(report.lights.size()),
+            std::vector<double>(report.lights.size())};
+    for (size_t i = 0; i < report.steps.size(); ++i) {
+        const RayStep& step = report.steps[i];
         const double length = std::min(high, step.high) - std::max(low, step.low);
         if (!(length > 0)) continue;
         const double part = length / (step.high - step.low);
         row.depth += step.extinction * length, row.reach += step.reach * part;
-        row.source += length * dvec3(step.glow), row.added += part * dvec3(added_by(story, i));
-        for (size_t l = 0; l < story.lights.size(); ++l) {
-            row.source += length * dvec3(story.lights[l].at[i].scattered);
-            row.share[l] += length * story.lights[l].at[i].share;
-            row.to_light[l] += length * story.lights[l].at[i].transmittance;
+        row.source += length * dvec3(step.glow), row.added += part * dvec3(added_by(report, i));
+        for (size_t l = 0; l < report.lights.size(); ++l) {
+            row.source += length * dvec3(report.lights[l].at[i].scattered);
+            row.share[l] += length * report.lights[l].at[i].share;
+            row.to_light[l] += length * report.lights[l].at[i].transmittance;
         }
     }
     return row;
 }
 
 // Ends of rows at round distances.
-std::vector<double> row_ends(const RayStory& story) {
-    const double low = story.steps.front().low, high = story.steps.back().high;
+std::vector<double> row_ends(const RayReport& report) {
+    const double low = report.steps.front().low, high = report.steps.back().high;
     double length = std::pow(10.0, std::floor(std::log10((high - low) / max_rows)));
     for (const double factor : {2.0, 2.5, 2.0})
         if ((high - low) / length > max_rows - 1) length *= factor;
@@ -56,25 +56,25 @@ std::vector<double> row_ends(const RayStory& story) {
 }
 
 // The lights that contribute most of the fog light.
-std::vector<size_t> main_lights(const RayStory& story) {
+std::vector<size_t> main_lights(const RayReport& report) {
     std::vector<size_t> all;
-    for (size_t l = 0; l < story.lights.size(); ++l)
-        if (luminance(story.lights[l].fog) > 0) all.push_back(l);
+    for (size_t l = 0; l < report.lights.size(); ++l)
+        if (luminance(report.lights[l].fog) > 0) all.push_back(l);
     std::ranges::stable_sort(
-        all, [&](size_t a, size_t b) { return luminance(story.lights[a].fog) > luminance(story.lights[b].fog); });
+        all, [&](size_t a, size_t b) { return luminance(report.lights[a].fog) > luminance(report.lights[b].fog); });
     all.resize(std::min(all.size(), max_light_columns));
     return all;
 }
 }
 
-std::string steps_text(const RayStory& story) {
-    if (story.steps.empty()) return {};
-    const std::vector<size_t> lights = main_lights(story);
+std::string steps_text(const RayReport& report) {
+    if (report.steps.empty()) return {};
+    const std::vector<size_t> lights = main_lights(report);
     const bool both = 2 * lights.size() <= max_light_columns;
     std::string text = "Step by step (luminance, nits)\n";
     if (!lights.empty()) text += std::string(67, ' ');
     for (const size_t l : lights)
-        text += formatted(both ? " %17s" : " %8s", cut(printable(story.lights[l].name, 40), both ? 17 : 8).c_str());
+        text += formatted(both ? " %17s" : " %8s", cut(printable(report.lights[l].name, 40), both ? 17 : 8).c_str());
     if (!lights.empty()) text += "\n";
     text += formatted("  %8s %8s %9s %8s %8s %10s %10s", "from, m", "to, m", "fog, 1/m", "depth", "to eye", "per metre",
                       "arrives");
@@ -82,9 +82,9 @@ std::string steps_text(const RayStory& story) {
     text += "\n";
     dvec3 sum(0);
     double depth = 0;
-    const std::vector<double> ends = row_ends(story);
+    const std::vector<double> ends = row_ends(report);
     for (size_t i = 0; i + 1 < ends.size(); ++i) {
-        const Row row = row_of(story, ends[i], ends[i + 1]);
+        const Row row = row_of(report, ends[i], ends[i + 1]);
         const double length = row.high - row.low;
         depth += row.depth, sum += row.added;
         text +=
@@ -97,8 +97,8 @@ std::string steps_text(const RayStory& story) {
         }
         text += "\n";
     }
-    const double all = luminance(vec3(sum)), exact = luminance(story.reference.inscatter);
-    text += formatted("  %zu steps add up to %s, the reference is %s", story.steps.size(), digits(all).c_str(),
+    const double all = luminance(vec3(sum)), exact = luminance(report.reference.inscatter);
+    text += formatted("  %zu steps add up to %s, the reference is %s", report.steps.size(), digits(all).c_str(),
                       digits(exact).c_str());
     if (exact > 0) text += formatted(": error %.2f %%", 100 * std::abs(all / exact - 1));
     return text + "\n";

@@ -19,7 +19,7 @@ double root_mean(const Image<vec3>& squares) {
     return std::sqrt(sum / static_cast<double>(squares.pixels.size()));
 }
 
-void add_halves(const Picture& test, const Picture& reference, Comparison& result) {
+void add_halves(const ExrColors& test, const ExrColors& reference, Comparison& result) {
     const Image<vec3>*r1 = reference.layer("half_a"), *r2 = reference.layer("half_b");
     const Image<vec3>*a1 = test.layer("half_a"), *a2 = test.layer("half_b");
     if (!r1 || !r2) return;
@@ -68,7 +68,7 @@ uint64_t Comparison::non_finite() const {
     return count;
 }
 
-Comparison compare(const Picture& test, const Picture& reference, const Viewing& viewing, Image<float>* flip_map) {
+Comparison compare(const ExrColors& test, const ExrColors& reference, const Viewing& viewing, Image<float>* flip_map) {
     check_same_frame(test, reference);
     Comparison result;
     result.stylised = test.stylised || reference.stylised;

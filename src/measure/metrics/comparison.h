@@ -40,7 +40,7 @@ struct Comparison {
 };
 
 // Throws Error (refused) when the frames do not match. The FLIP map goes to `flip_map` if given.
-Comparison compare(const Picture& test, const Picture& reference, const Viewing& viewing,
+Comparison compare(const ExrColors& test, const ExrColors& reference, const Viewing& viewing,
                    Image<float>* flip_map = nullptr);
 
 // A sequence as a whole: errors pooled over all frames, SSIM, FLIP and the unbiased estimates averaged. Layers and

@@ -31,18 +31,18 @@ Image<vec3> color_of(const Channels& channels) {
 }
 
 std::string size_text(ivec2 size) { return std::to_string(size.x) + " x " + std::to_string(size.y); }
-std::string window_text(const Picture& picture) {
+std::string window_text(const ExrColors& picture) {
     return size_text(picture.beauty.size) + " at " + std::to_string(picture.low.x) + "," +
            std::to_string(picture.low.y);
 }
 }
 
-const Image<vec3>* Picture::layer(const std::string& name) const {
+const Image<vec3>* ExrColors::layer(const std::string& name) const {
     const auto found = layers.find(name);
     return found == layers.end() ? nullptr : &found->second;
 }
 
-Picture read_picture(const std::filesystem::path& file) {
+ExrColors read_exr_colors(const std::filesystem::path& file) {
     const ExrFile exr = read_exr(file);
     std::map<std::string, Channels> layers;
     for (const auto& [name, image] : exr.channels) {
@@ -51,7 +51,7 @@ Picture read_picture(const std::filesystem::path& file) {
         layers[plain ? "" : name.substr(0, dot)][plain ? name : name.substr(dot + 1)] = &image;
     }
 
-    Picture picture;
+    ExrColors picture;
     picture.file = file.string(), picture.display = exr.display, picture.low = exr.low;
     const auto style = exr.attributes.find("stylised");
     picture.stylised = style != exr.attributes.end() && style->second != "0";
@@ -70,7 +70,7 @@ Picture read_picture(const std::filesystem::path& file) {
     return picture;
 }
 
-void check_same_frame(const Picture& test, const Picture& reference) {
+void check_same_frame(const ExrColors& test, const ExrColors& reference) {
     const std::string other = "the reference " + printable(reference.file, 120);
     if (test.display != reference.display)
         refuse(test.file,

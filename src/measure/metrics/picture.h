@@ -7,7 +7,7 @@
 #include <string>
 
 namespace tyndall {
-struct Picture {
+struct ExrColors {
     std::string file;
     ivec2 display{0}, low{0}; // display window's size; where the pixels lie in it
     bool grey = false;        // the file has luminance (Y) only
@@ -20,8 +20,8 @@ struct Picture {
 };
 
 // Throws Error as read_exr does, and refused when there is neither R, G, B nor Y.
-Picture read_picture(const std::filesystem::path& file);
+ExrColors read_exr_colors(const std::filesystem::path& file);
 
 // Throws Error (refused) unless both hold the same pixels of images of the same size, both in color or both gray.
-void check_same_frame(const Picture& test, const Picture& reference);
+void check_same_frame(const ExrColors& test, const ExrColors& reference);
 }

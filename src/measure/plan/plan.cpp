@@ -19,8 +19,8 @@ Term history_term(const View& view, const Snapshot& snapshot, const Contender& c
     const Settings& settings = chosen.choice.candidate.settings;
     const FrameOptions options{false, nullptr, control.cancel, {}, {}};
     const Pilot pilot =
-        make_pilot(*chosen.mode, centers, snapshot, nullptr, even_chances(centers, snapshot), 0, options);
-    const Measured measured = measure(pilot, *chosen.mode, settings, steady_seconds);
+        make_pilot(*chosen.mode, centers, snapshot, nullptr, uniform_chances(centers, snapshot), 0, options);
+    const Measurement measured = measure(pilot, *chosen.mode, settings, steady_seconds);
     const double samples = std::max(1.0, std::min(chosen.samples, 1.0 * max_target_samples));
     term.error = std::sqrt(measured.sample.value / samples), term.bound = std::sqrt(measured.sample.bound / samples);
     term.needed = term.bound > error;
@@ -41,7 +41,7 @@ std::optional<LimitationGroup> worst_of(const Limitations& limitations) {
 
 // Why a mode that was measured lost, given its best candidate and the winner.
 std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const Limitations& limitations) {
-    if (best.gets_there() && goal.error > 0) {
+    if (best.reaches_goal() && goal.error > 0) {
         const double ratio = best.seconds / winner.seconds;
         if (ratio < 1 && best.risk > 0) return "may reach the target in " + seconds_text(best.seconds) + ", or miss it";
         return "reaches the target in " + seconds_text(best.seconds) +
@@ -49,9 +49,9 @@ std::string loss(const Contender& best, const Contender& winner, const Goal& goa
     }
     std::string text =
         goal.error > 0 ? "error stays at " + percent_text(best.error) : percent_text(best.error) + " error";
-    if (goal.error > 0 && !best.gets_there() && best.error < goal.error)
+    if (goal.error > 0 && !best.reaches_goal() && best.error < goal.error)
         text = "too noisy: needs more than " + formatted("%.0f", 1.0 * max_target_samples) + " samples per pixel";
-    if (!best.gets_there() && goal.seconds > 0 && best.seconds > goal.seconds)
+    if (!best.reaches_goal() && goal.seconds > 0 && best.seconds > goal.seconds)
         text += ", in " + seconds_text(best.seconds) + " at least";
     if (const auto worst = worst_of(limitations)) text += "; " + where_of(*worst) + ": " + sentence_of(worst->worst);
     return text;
@@ -101,11 +101,11 @@ Contest contest_of_orders(std::span<const Mode> modes, const View& view, const S
     plan.orders = orders_error(main_mode(), view, snapshot, plan.settings, goal.error, options, stop);
     Settings traced = plan.settings;
     traced.path.orders = plan.settings.fluence.orders;
-    const auto path = [&] { return measured_alone(mode_of_all_orders(), view, snapshot, traced, goal, options); };
+    const auto path = [&] { return sole_contender(mode_of_all_orders(), view, snapshot, traced, goal, options); };
     Contest contest;
     Goal beside = goal;
     if (goal.error > 0) {
-        const std::optional<double> left = error_beside(plan.orders->pixels, goal.error);
+        const std::optional<double> left = remaining_error(plan.orders->pixels, goal.error);
         if (!left) contest.contenders.push_back(path());
         beside.error = left.value_or(goal.error);
     }
@@ -136,7 +136,7 @@ Plan make_plan(std::span<const Mode> modes, const View& view, const Snapshot& sn
     const double start = goal.clock();
     const double wanted = goal.error > 0 ? goal.error : 0.02; // target error for terms when only time is limited
     if (share == infinity) plan.terms = terms_of(view, snapshot, settings, wanted, {control.cancel, part(0, 0.4)});
-    plan.settings = without_needless(plan.terms, settings);
+    plan.settings = drop_unneeded(plan.terms, settings);
     const bool path_is_free = settings.path.orders == settings_for(goal.quality).path.orders;
     if (plan.settings.fluence.orders < 2 && path_is_free)
         plan.settings.path.orders = 1; // single scattering, as in all others
@@ -163,7 +163,7 @@ double Plan::expected_error() const {
 std::string Plan::certificate() const {
     std::string text = std::string(chosen.mode->name);
     if (!chosen.choice.candidate.name.empty()) text += " (" + chosen.choice.candidate.name + ")";
-    text += ": error " + percent_text(expected_error()) + (chosen.gets_there() ? " expected" : " at best");
+    text += ": error " + percent_text(expected_error()) + (chosen.reaches_goal() ? " expected" : " at best");
     if (goal.error > 0) text += ", target " + percent_text(goal.error);
     if (goal.seconds > 0) text += ", in " + seconds_text(goal.seconds);
     std::string left_out;
@@ -190,9 +190,9 @@ std::string plan_text(const Plan& plan) {
         const std::string name(standing.mode->name);
         if (standing.mode == plan.chosen.mode) {
             const Contender& best = plan.chosen;
-            text += formatted("  %-14s %s: %s in %s", name.c_str(), best.gets_there() ? "chosen" : "comes closest",
+            text += formatted("  %-14s %s: %s in %s", name.c_str(), best.reaches_goal() ? "chosen" : "comes closest",
                               percent_text(plan.expected_error()).c_str(), seconds_text(best.seconds).c_str());
-            if (best.gets_there())
+            if (best.reaches_goal())
                 text += formatted(", %.0f %s per pixel", best.samples, best.samples < 2 ? "sample" : "samples");
             text += (best.choice.candidate.name.empty() ? "" : ", " + best.choice.candidate.name) + "\n";
         } else {

@@ -57,7 +57,8 @@ struct Terms {
     const FrameOptions frame_options{false, nullptr, control.cancel, {}, {}};
 
     Pilot make(const Settings& truth) const {
-        Pilot result = make_pilot(main_mode(), view, snapshot, &truth, even_chances(view, snapshot), 0, frame_options);
+        Pilot result =
+            make_pilot(main_mode(), view, snapshot, &truth, uniform_chances(view, snapshot), 0, frame_options);
         while (!result.is_full()) grow(result);
         return result;
     }
@@ -72,8 +73,8 @@ struct Terms {
         return marched.emplace(make(truth));
     }
     SquaredError error_of(const Pilot& against, const Variant& variant) const {
-        Look look{*variant.mode, variant.settings, nullptr, &variant.snapshot};
-        return measure(against, look, steady_seconds).integrator;
+        PilotRun run{*variant.mode, variant.settings, nullptr, &variant.snapshot};
+        return measure(against, run, steady_seconds).integrator;
     }
 
     // Root mean square over mean of the image's color or of its fog light, whichever is larger: E is at most this times
@@ -83,7 +84,7 @@ struct Terms {
         const std::vector<vec3>& values = usual().truth;
         for (size_t i = 0; i < values.size(); ++i) {
             if (!is_finite(values[i])) continue;
-            const double weight = usual().tiles[i / pilot_values].stands_for;
+            const double weight = usual().tiles[i / pilot_values].weight;
             squares[i % 2] += weight * glm::dot(values[i], values[i]) / 3;
             means[i % 2] += weight * (values[i].x + values[i].y + values[i].z) / 3, weights[i % 2] += weight;
         }
@@ -222,7 +223,7 @@ std::string percent_text(double share) {
     return share < infinity ? formatted(share < 0.0995 ? "%.2g %%" : "%.0f %%", 100 * share) : "any";
 }
 
-double thickest_line(const Snapshot& snapshot) {
+double max_optical_depth(const Snapshot& snapshot) {
     double depth = 0;
     for (const Medium& medium : snapshot.media) {
         const vec3 size = medium.world_bounds.size();
@@ -235,7 +236,7 @@ std::vector<Term> terms_of(const View& view, const Snapshot& snapshot, const Set
                            const TermControl& control) {
     if (snapshot.media.empty()) return {};
     Terms terms{view, snapshot, careful(settings), error, control};
-    const double thickest = thickest_line(snapshot);
+    const double thickest = max_optical_depth(snapshot);
     const auto done = [&](double share) {
         if (control.progress) control.progress(share);
     };
@@ -247,7 +248,7 @@ std::vector<Term> terms_of(const View& view, const Snapshot& snapshot, const Set
     return std::move(terms.terms);
 }
 
-Settings without_needless(const std::vector<Term>& terms, Settings settings) {
+Settings drop_unneeded(const std::vector<Term>& terms, Settings settings) {
     TermSettings& switches = settings.terms;
     bool shadows = false, needless = false;
     for (const Term& term : terms) {

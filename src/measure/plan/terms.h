@@ -35,11 +35,11 @@ std::vector<Term> terms_of(const View& view, const Snapshot& snapshot, const Set
                            const TermControl& control = {});
 
 // The settings with the terms that are not needed switched off.
-Settings without_needless(const std::vector<Term>& terms, Settings settings);
+Settings drop_unneeded(const std::vector<Term>& terms, Settings settings);
 
 // A share as "4.2 %".
 std::string percent_text(double share);
 
 // An upper bound of the optical depth along any line through the fog; infinite where none is known.
-double thickest_line(const Snapshot& snapshot);
+double max_optical_depth(const Snapshot& snapshot);
 }

@@ -6,7 +6,7 @@
 #include "scene/light_filter.h"
 
 namespace tyndall {
-StressMeasure usual_measure() { return {0.1, with_bias, error_and_bias, -1, {}, 0.02}; }
+StressMeasure default_measure() { return {0.1, with_bias, error_and_bias, -1, {}, 0.02}; }
 
 Medium thin_haze(float extinction, const Phase& phase) {
     return homogeneous_medium(extinction, {vec3(-3), vec3(3)}, phase);
@@ -39,7 +39,7 @@ Light face_light(LightKind kind, vec3 center, vec3 normal, vec2 half) {
     Light light;
     light.name = "face", light.position = center, light.direction = shape.normal;
     light.intensity = vec3(face_area(shape));
-    stand_for(shape, light);
+    make_punctual(shape, light);
     return light;
 }
 
@@ -52,7 +52,7 @@ std::shared_ptr<const Environment> sky_of(int columns, const std::function<vec3(
             image->at(x, y) =
                 radiance({std::sin(polar) * std::sin(turn), std::cos(polar), -std::sin(polar) * std::cos(turn)});
         }
-    BackgroundNow map;
+    BackgroundState map;
     map.kind = BackgroundKind::image, map.image = image, map.lat_long = true;
     return make_environment(map);
 }

@@ -13,7 +13,7 @@ constexpr ivec2 authored_size{40, 24};
 
 // Against the ground truth, the same for every scene: an error of 10 % and a bias of 2 % are allowed.
 inline constexpr std::string_view with_bias = "relative RMSE of image or fog light; bias of the fog's mean light";
-StressMeasure usual_measure();
+StressMeasure default_measure();
 
 Medium thin_haze(float extinction = 0.1f, const Phase& phase = {});
 

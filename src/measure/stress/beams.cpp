@@ -76,7 +76,7 @@ StressScene past_a_post(double width) {
 
 std::vector<StressCase> stress_beams() {
     constexpr std::string_view group = "profiles and gobos";
-    const StressMeasure usual = usual_measure();
+    const StressMeasure usual = default_measure();
     return {
         StressCase("cut-off", group, "the edge of an IES profile gets sharp", "edge", "degrees", {20, 5, 0.5},
                    Claim::physical, excuses, cut_off, usual),

@@ -77,7 +77,7 @@ double white_off(Trial& trial) {
 
 std::vector<StressCase> stress_colors() {
     constexpr std::string_view group = "colored extinction";
-    const StressMeasure usual = usual_measure();
+    const StressMeasure usual = default_measure();
     return {
         StressCase("thick-red", group, "one channel gets thick", "extinction", "1/m", {0.5, 2, 10, 40}, Claim::physical,
                    excuses, thick_channel, usual),

@@ -73,7 +73,7 @@ StressScene forward_fog(double g) {
 
 std::vector<StressCase> stress_faces() {
     constexpr std::string_view group = "area lights";
-    const StressMeasure usual = usual_measure();
+    const StressMeasure usual = default_measure();
     return {
         StressCase("rectangle", group, "a rectangle gets huge", "half a side", "m", {0.05, 0.3, 2}, Claim::physical,
                    excuses, rectangle_of, usual),

@@ -75,7 +75,7 @@ StressScene in_a_row(double count) {
 
 std::vector<StressCase> stress_fire() {
     constexpr std::string_view group = "fire";
-    const StressMeasure usual = usual_measure();
+    const StressMeasure usual = default_measure();
     return {
         StressCase("small-fire", group, "a flame shrinks below a pixel", "height", "m", {1, 0.3, 0.05}, Claim::physical,
                    excuses, of_height, usual),

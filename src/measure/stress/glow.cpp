@@ -60,7 +60,7 @@ StressScene eye_before(double distance) {
 
 std::vector<StressCase> stress_glow() {
     constexpr std::string_view group = "glowing surfaces";
-    const StressMeasure usual = usual_measure();
+    const StressMeasure usual = default_measure();
     return {
         StressCase("small-glow", group, "a glowing plate shrinks below a pixel", "side", "m", {1, 0.2, 0.02},
                    Claim::physical, excuses, of_side, usual),

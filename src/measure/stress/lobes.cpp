@@ -62,7 +62,7 @@ StressScene droplets_in_shaft(double diameter) {
 
 std::vector<StressCase> stress_lobes() {
     constexpr std::string_view group = "phase functions";
-    const StressMeasure usual = usual_measure();
+    const StressMeasure usual = default_measure();
     return {
         StressCase("rayleigh-lamp", group, "a lamp in Rayleigh-scattering fog that gets thick", "extinction", "1/m",
                    {0.02, 0.2, 0.6}, Claim::physical, excuses, rayleigh, usual),

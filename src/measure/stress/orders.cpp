@@ -48,7 +48,7 @@ double orders_off(Trial& trial) {
     FrameStats stats;
     const Layers truth =
         render_frame(mode_of_all_orders(), all_light.view, all_light.snapshot, all_light.settings, options, stats);
-    const Layers layers = error_is_noise(*trial.mode) ? trial.render(all_light) : trial.render();
+    const Layers layers = is_unbiased(*trial.mode) ? trial.render(all_light) : trial.render();
     return std::abs(mean_of(layers.inscatter) / mean_of(truth.inscatter) - 1);
 }
 

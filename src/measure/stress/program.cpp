@@ -202,7 +202,7 @@ double culling_off(Trial& trial) {
     recipe.threshold = static_cast<float>(trial.value), recipe.voxel_size = 1.0 / 24;
     const Medium grown = [&] {
         Medium medium;
-        medium.density.kind = DensityKind::bricks, medium.density.bricks = make_bricks(grow(recipe, 0.3));
+        medium.density.kind = DensityKind::bricks, medium.density.bricks = make_bricks(generate(recipe, 0.3));
         return medium;
     }();
     std::vector<float> x, y, z;

@@ -139,7 +139,7 @@ StressScene spinning_gobo(double degrees) {
     spot.inner_cone = 0.35f, spot.outer_cone = 0.4f;
     GoboSource& gobo = spot.gobo.emplace();
     gobo.still = board_gobo(2, 4, vec3(1), vec3(0.05f));
-    gobo.turn = from_to(0.0f, static_cast<float>(degrees) * pi / 180);
+    gobo.rotation = from_to(0.0f, static_cast<float>(degrees) * pi / 180);
     return shuttered(std::move(scene), 0, 1);
 }
 
@@ -169,7 +169,7 @@ StressScene matte_before(double distance) {
 
 std::vector<StressCase> stress_shutters() {
     constexpr std::string_view lens = "lenses", shutter = "open shutters", matte = "mattes";
-    const StressMeasure usual = usual_measure();
+    const StressMeasure usual = default_measure();
     return {
         StressCase("wide-lens", lens, "a lens opens", "radius", "m", {0.002, 0.05, 0.3}, Claim::physical, excuses,
                    of_radius, usual),

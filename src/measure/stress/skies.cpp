@@ -69,7 +69,7 @@ StressScene seen_from(double azimuth) {
 
 std::vector<StressCase> stress_skies() {
     constexpr std::string_view group = "skies";
-    const StressMeasure usual = usual_measure();
+    const StressMeasure usual = default_measure();
     return {
         StressCase("half-sky", group, "half a sky, in forward-scattering fog", "g", "", {0, 0.5, 0.9}, Claim::physical,
                    excuses, half_lit, usual),

@@ -94,11 +94,11 @@ bool takes_part(const StressCase& stress, const Mode& mode) {
     const bool physical = mode.accuracy != Accuracy::artistic;
     const std::pair<Claim, bool> made[] = {{Claim::along_rays, mode.surfaces != Surfaces::post},
                                            {Claim::physical, physical},
-                                           {Claim::noise_free, physical && !error_is_noise(mode)},
+                                           {Claim::noise_free, physical && !is_unbiased(mode)},
                                            {Claim::density, physical && mode.resolves_density},
                                            {Claim::shadows, physical && mode.casts_shadows},
                                            {Claim::lamps, physical && mode.resolves_lamps},
-                                           {Claim::history, mode.remembers},
+                                           {Claim::history, mode.uses_history},
                                            {Claim::fluence, mode.adds_fluence},
                                            {Claim::adaptive, physical && mode.adapts_steps}};
     return std::ranges::all_of(made, [&](const auto& one) {

@@ -54,7 +54,7 @@ bool has_sampled_light(const Snapshot& snapshot) {
 bool is_noise(const Trial& trial) {
     const Snapshot& snapshot = trial.scene.snapshot;
     const bool shadows = snapshot.occluders && !snapshot.occluders->empty();
-    if (error_is_noise(*trial.mode) || is_blurred(trial.scene)) return true;
+    if (is_unbiased(*trial.mode) || is_blurred(trial.scene)) return true;
     if (trial.mode->samples_soft_lights && has_sampled_light(snapshot)) return true;
     if (trial.mode->samples_soft_lights && shadows && std::ranges::any_of(snapshot.lights, is_soft)) return true;
     const Limitations said = trial.mode->limitations(trial.scene.view, snapshot, trial.scene.settings);
@@ -157,7 +157,7 @@ Layers Trial::render(const StressScene& what, History* history, bool parts) {
 }
 
 Layers Trial::truth_of_scene(const StressScene& what) {
-    Settings settings = truth_of(what.settings);
+    Settings settings = truth_settings(what.settings);
     View view = what.view;
     if (std::ranges::any_of(what.snapshot.lights, is_soft)) settings.terms.light_points = 16, view.pixel_samples = 8;
     FrameOptions options;

@@ -117,9 +117,9 @@ std::vector<Check> verify_program(const VerifyControl& control) {
     }
     std::vector<Check> checks = run_checks(groups, first);
     const Scene room = slatted_room();
-    SceneProof proof;
-    proof.size = {128, 72}, proof.samples = 512;
-    for (Check& check : verify_scene(room, proof, second)) {
+    VerifyOptions options;
+    options.size = {128, 72}, options.samples = 512;
+    for (Check& check : verify_scene(room, options, second)) {
         check.topic = "a slatted room: " + check.topic;
         checks.push_back(std::move(check));
     }

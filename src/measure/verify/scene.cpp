@@ -20,7 +20,7 @@ namespace tyndall {
 namespace {
 // What an image of a scene is rendered with, at the proof's frame.
 struct Shot {
-    const SceneProof& proof;
+    const VerifyOptions& options;
     const VerifyControl& control;
     Checks& checks;
     Settings settings;
@@ -33,13 +33,13 @@ struct Shot {
 
 Layers render(const Shot& shot, const Scene& scene, const Snapshot& snapshot) {
     View view;
-    view.camera = camera_at(scene, find_camera(scene, shot.proof.camera), snapshot.seconds);
-    view.size = shot.proof.size;
+    view.camera = camera_at(scene, find_camera(scene, shot.options.camera), snapshot.seconds);
+    view.size = shot.options.size;
     view.crop_low = shot.crop_low, view.crop_high = shot.crop_high;
     view.pixel_samples = shot.settings.pixel.samples, view.batches = shot.batches;
     view.filter = shot.settings.pixel.filter, view.filter_radius = shot.settings.pixel.filter_radius;
     view.fog_parts = shot.fog_parts;
-    view.seed = shot.proof.seed, view.frame = shot.proof.frame;
+    view.seed = shot.options.seed, view.frame = shot.options.frame;
     FrameOptions options;
     options.cancel = shot.control.cancel;
     options.progress = shot.progress;
@@ -49,8 +49,8 @@ Layers render(const Shot& shot, const Scene& scene, const Snapshot& snapshot) {
     return layers;
 }
 
-Snapshot moment(const Scene& scene, const SceneProof& proof) {
-    return make_snapshot(scene, moment_of(scene, proof.frame), nullptr, MissingFrame::error);
+Snapshot moment(const Scene& scene, const VerifyOptions& options) {
+    return make_snapshot(scene, moment_of(scene, options.frame), nullptr, MissingFrame::error);
 }
 
 // Number of pixels whose color, fog light or transmittance differ in any bit; `offset`: where `part` is in `whole`.
@@ -66,10 +66,10 @@ int different_pixels(const Layers& part, const Layers& whole, ivec2 offset) {
     return count;
 }
 
-void check_bits(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
-    const Snapshot snapshot = moment(scene, proof);
+void check_bits(const Scene& scene, const VerifyOptions& options, const VerifyControl& control, Checks& checks) {
+    const Snapshot snapshot = moment(scene, options);
     for (const std::string_view mode : {main_mode().name, mode_of_all_orders().name}) {
-        Shot shot{proof, control, checks, settings_for(Quality::preview)};
+        Shot shot{options, control, checks, settings_for(Quality::preview)};
         shot.mode = mode, shot.settings.path.orders = 2;
         const Layers whole = render(shot, scene, snapshot);
         const int threads = thread_count();
@@ -78,18 +78,18 @@ void check_bits(const Scene& scene, const SceneProof& proof, const VerifyControl
         set_thread_count(threads);
         checks.add(std::string(mode) + ": pixels that differ between 1 and " + std::to_string(threads) + " threads",
                    different_pixels(single, whole, ivec2(0)), 0, 0, "same bits");
-        shot.crop_low = proof.size / 4, shot.crop_high = glm::max(proof.size * 3 / 4, shot.crop_low + 1);
+        shot.crop_low = options.size / 4, shot.crop_high = glm::max(options.size * 3 / 4, shot.crop_low + 1);
         checks.add(std::string(mode) + ": pixels that differ between a crop and the whole",
                    different_pixels(render(shot, scene, snapshot), whole, shot.crop_low), 0, 0, "same bits");
     }
 }
 
-void check_scale(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
-    const Shot shot{proof, control, checks, settings_for(Quality::preview)};
-    const Layers usual = render(shot, scene, moment(scene, proof));
+void check_scale(const Scene& scene, const VerifyOptions& options, const VerifyControl& control, Checks& checks) {
+    const Shot shot{options, control, checks, settings_for(Quality::preview)};
+    const Layers usual = render(shot, scene, moment(scene, options));
     for (const float factor : {0.5f, 64.0f}) {
         const Scene other = scaled(scene, factor);
-        const Layers layers = render(shot, other, moment(other, proof));
+        const Layers layers = render(shot, other, moment(other, options));
         const Errors errors = measure_errors(layers.color, usual.color);
         checks.add(factor < 1 ? "rmse_rel of everything at half the size" : "rmse_rel of everything 64 times as large",
                    relative(errors.rmse, errors.mean_reference), 0, 1e-3, "rounding");
@@ -109,13 +109,13 @@ Scene only_lights(Scene scene) {
     return scene;
 }
 
-void check_lights(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
+void check_lights(const Scene& scene, const VerifyOptions& options, const VerifyControl& control, Checks& checks) {
     const Scene dark = only_lights(scene);
-    Shot shot{proof, control, checks, settings_for(Quality::preview)};
+    Shot shot{options, control, checks, settings_for(Quality::preview)};
     shot.fog_parts = true;
-    const Layers layers = render(shot, dark, moment(dark, proof));
+    const Layers layers = render(shot, dark, moment(dark, options));
     shot.fog_parts = false;
-    const Layers whole = render(shot, dark, moment(dark, proof));
+    const Layers whole = render(shot, dark, moment(dark, options));
     Image<vec3> sum(layers.size, vec3(0));
     for (const auto& [name, light] : layers.lights)
         for (size_t i = 0; i < sum.pixels.size(); ++i) sum.pixels[i] += light.pixels[i];
@@ -127,20 +127,20 @@ void check_lights(const Scene& scene, const SceneProof& proof, const VerifyContr
 
 // The scene's fog alone in uniform surroundings of radiance 1, made white, and thinned where it is too thick for paths
 // to escape. Skipped for fog without bounds, which light never leaves if it is white.
-void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
+void check_furnace(const Scene& scene, const VerifyOptions& options, const VerifyControl& control, Checks& checks) {
     Scene fog = only_lights(scene);
     fog.instances.clear(), fog.lights.clear(), fog.environment.reset();
     fog.ambient = Keyed<vec3>(vec3(1));
     fog.background.color = Keyed<vec3>(vec3(1));
     for (MediumSource& medium : fog.media) medium.albedo = Keyed<vec3>(vec3(1)), medium.albedo_grid.reset();
     constexpr float thick = 20; // optical depths across
-    Snapshot white = moment(fog, proof);
+    Snapshot white = moment(fog, options);
     if (!std::ranges::all_of(white.media, [](const Medium& m) { return is_finite(m.world_bounds.size()); })) return;
     for (Medium& medium : white.media) {
         const float across = medium.majorant() * glm::length(medium.world_bounds.size());
         medium.optics.extinction *= std::min(1.0f, thick / (across * static_cast<float>(white.media.size())));
     }
-    Shot shot{proof, control, checks, settings_for(Quality::preview)};
+    Shot shot{options, control, checks, settings_for(Quality::preview)};
     shot.mode = mode_of_all_orders().name, shot.settings.pixel.samples = shot.batches = 64;
     const Layers layers = render(shot, fog, white);
     double mean = 0, variance = 0;
@@ -151,10 +151,10 @@ void check_furnace(const Scene& scene, const SceneProof& proof, const VerifyCont
                "3 standard errors");
 }
 
-void check_march(const Scene& scene, const SceneProof& proof, const VerifyControl& control, Checks& checks) {
+void check_march(const Scene& scene, const VerifyOptions& options, const VerifyControl& control, Checks& checks) {
     const Scene lit = only_lights(scene);
-    const Snapshot snapshot = moment(lit, proof);
-    Shot exact{proof, control, checks, settings_for(Quality::reference)};
+    const Snapshot snapshot = moment(lit, options);
+    Shot exact{options, control, checks, settings_for(Quality::reference)};
     exact.settings.pixel.filter = PixelFilter::center;
     // Only points on soft lights and in an environment are random in the reference: batches of them give the variance
     // of its mean.
@@ -175,7 +175,7 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
 
     Shot noisy = exact;
     noisy.mode = mode_of_all_orders().name, noisy.settings.path.orders = 1, noisy.progress = part(0.4, 1);
-    noisy.settings.pixel.samples = proof.samples, noisy.batches = 64;
+    noisy.settings.pixel.samples = options.samples, noisy.batches = 64;
     const Layers layers = render(noisy, lit, snapshot);
     Image<vec3> variance = layers.variance;
     for (size_t i = 0; i < reference.variance.pixels.size(); ++i) variance.pixels[i] += reference.variance.pixels[i];
@@ -195,10 +195,10 @@ void check_march(const Scene& scene, const SceneProof& proof, const VerifyContro
                "0.005, or chance");
 }
 
-std::vector<CheckGroup> scene_checks(const Scene& scene, const SceneProof& proof, const VerifyControl& control) {
-    using Check = void (*)(const Scene&, const SceneProof&, const VerifyControl&, Checks&);
+std::vector<CheckGroup> scene_checks(const Scene& scene, const VerifyOptions& options, const VerifyControl& control) {
+    using Check = void (*)(const Scene&, const VerifyOptions&, const VerifyControl&, Checks&);
     const auto group = [&](const char* topic, double share, Check check) {
-        return CheckGroup{topic, share, [&, check](Checks& checks) { check(scene, proof, control, checks); }};
+        return CheckGroup{topic, share, [&, check](Checks& checks) { check(scene, options, control, checks); }};
     };
     return {group("same bits", 2, check_bits), group("units of length", 2, check_scale),
             group("lights add up", 1, check_lights), group("white furnace", 4, check_furnace),
@@ -206,9 +206,9 @@ std::vector<CheckGroup> scene_checks(const Scene& scene, const SceneProof& proof
 }
 }
 
-std::vector<Check> verify_scene(const Scene& scene, const SceneProof& proof, const VerifyControl& control) {
+std::vector<Check> verify_scene(const Scene& scene, const VerifyOptions& options, const VerifyControl& control) {
     assert(!scene.media.empty());
-    std::vector<CheckGroup> groups = scene_checks(scene, proof, control);
+    std::vector<CheckGroup> groups = scene_checks(scene, options, control);
     groups.push_back({"finite", 0, [](Checks& checks) {
                           checks.add("samples of all these images that were not finite numbers",
                                      static_cast<double>(checks.non_finite), 0, 0, "none");

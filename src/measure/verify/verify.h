@@ -27,7 +27,7 @@ struct VerifyControl {
 // Verifies the program by itself, in about a minute on two cores. Throws Error (internal) when cancelled.
 std::vector<Check> verify_program(const VerifyControl& control);
 
-struct SceneProof {
+struct VerifyOptions {
     int frame = 1;
     std::string camera; // empty = the scene's
     ivec2 size{160, 90};
@@ -37,5 +37,5 @@ struct SceneProof {
 
 // Verifies a user's scene that has fog: invariances, and the path tracer's first order against the deterministic
 // reference. Throws Error.
-std::vector<Check> verify_scene(const Scene& scene, const SceneProof& proof, const VerifyControl& control);
+std::vector<Check> verify_scene(const Scene& scene, const VerifyOptions& options, const VerifyControl& control);
 }

@@ -22,13 +22,13 @@ struct Packet {
 
 // Intersections of rays with a card. Along the beam: 0..1 (share) and meters; across it: -1..1; `half`: half width
 // there.
-struct OnCard {
+struct CardHit {
     Mask16 met;
     Floats t, share, along, across, half;
     Vec3s point;
 };
 
-HWY_INLINE Floats smooth(float low, float high, const Floats& x) {
+HWY_INLINE Floats smoothstep(float low, float high, const Floats& x) {
     const Floats s = max(min((x - low) * (1 / std::max(high - low, 1e-6f)), 1.0f), 0.0f);
     return s * s * (3.0f - 2.0f * s);
 }
@@ -47,61 +47,61 @@ HWY_INLINE Floats value_noise(const Floats& x, const Floats& y, int32_t seed) {
     const Ints i = truncate(fx), j = truncate(fy);
     const Floats u = x - fx, v = y - fy;
     const Floats su = u * u * (3.0f - 2.0f * u), sv = v * v * (3.0f - 2.0f * v);
-    const Floats low = mixed(random16(i, j, seed), random16(i + 1, j, seed), su);
-    const Floats high = mixed(random16(i, j + 1, seed), random16(i + 1, j + 1, seed), su);
-    return mixed(low, high, sv);
+    const Floats low = lerp(random16(i, j, seed), random16(i + 1, j, seed), su);
+    const Floats high = lerp(random16(i, j + 1, seed), random16(i + 1, j + 1, seed), su);
+    return lerp(low, high, sv);
 }
 
 // Intersects rays with a card's plane; `met` marks hits inside the card.
-HWY_INLINE OnCard meet(const Packet& packet, const CardQuad& quad) {
-    OnCard on;
+HWY_INLINE CardHit intersect(const Packet& packet, const CardQuad& quad) {
+    CardHit hit;
     const Floats slope = dot(packet.direction, splat(quad.normal));
     const Mask16 level = abs(slope) < 1e-6f;
-    on.t = dot(splat(quad.start) - packet.origin, splat(quad.normal)) / select(level, 1.0f, slope);
-    on.point = fused(packet.direction, on.t, packet.origin);
-    const Vec3s off = on.point - splat(quad.start);
-    on.along = dot(off, splat(quad.along)), on.share = on.along * (1 / quad.length);
-    on.half = max(fused(on.share, quad.half_to - quad.half_from, quad.half_from), 1e-6f * quad.length);
-    on.across = dot(off, splat(quad.side)) / on.half;
-    on.met = (!level) & (on.t > 0.0f) & (on.t < packet.t_max) & (on.share > 0.0f) & (on.share < 1.0f) &
-             (abs(on.across) < 1.0f);
-    return on;
+    hit.t = dot(splat(quad.start) - packet.origin, splat(quad.normal)) / select(level, 1.0f, slope);
+    hit.point = fma(packet.direction, hit.t, packet.origin);
+    const Vec3s off = hit.point - splat(quad.start);
+    hit.along = dot(off, splat(quad.along)), hit.share = hit.along * (1 / quad.length);
+    hit.half = max(fma(hit.share, quad.half_to - quad.half_from, quad.half_from), 1e-6f * quad.length);
+    hit.across = dot(off, splat(quad.side)) / hit.half;
+    hit.met = (!level) & (hit.t > 0.0f) & (hit.t < packet.t_max) & (hit.share > 0.0f) & (hit.share < 1.0f) &
+              (abs(hit.across) < 1.0f);
+    return hit;
 }
 
 // Unit length of the textures: a fifth of the beam.
 inline float card_unit(const CardQuad& quad) { return 0.2f * quad.length; }
 
 // Random streaks along the beam, coarse and fine, that vary slowly along it: 0..1.
-HWY_INLINE Floats streaks(const Billboards& billboards, const CardQuad& quad, const OnCard& on) {
+HWY_INLINE Floats streaks(const Billboards& billboards, const CardQuad& quad, const CardHit& hit) {
     const BillboardSettings& s = billboards.settings;
     const int32_t seed = static_cast<int32_t>(quad.seed * 1000);
-    const Floats moved = (on.along - s.scroll * billboards.seconds) * (0.7f / card_unit(quad));
+    const Floats moved = (hit.along - s.scroll * billboards.seconds) * (0.7f / card_unit(quad));
     // Narrow cards have fewer stripes: none thinner than on a card 0.4 units wide.
     const float widest = std::max(quad.half_from, quad.half_to) / card_unit(quad);
     const float stripes = s.stripes * std::clamp(widest * (1 / 0.2f), 0.15f, 1.0f);
-    const Floats x = fused(on.across, 0.5f * stripes, quad.seed);
+    const Floats x = fma(hit.across, 0.5f * stripes, quad.seed);
     const Floats coarse = value_noise(x * 0.37f, moved * 0.5f, seed), fine = value_noise(x, moved, seed + 1);
     const Floats both = min(coarse * 0.6f + fine * 0.4f, 1.0f);
-    const Floats light = smooth(0.2f, 0.8f, both);
-    return fused(light - 1.0f, s.streaks, 1.0f);
+    const Floats light = smoothstep(0.2f, 0.8f, both);
+    return fma(light - 1.0f, s.streaks, 1.0f);
 }
 
 // Dust: round dots in some cells of a grid that drifts along and across the beam, never smaller than a pixel.
-HWY_INLINE Floats specks(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
+HWY_INLINE Floats specks(const Billboards& billboards, const CardQuad& quad, const CardHit& hit, const Packet& packet) {
     const float cell = 0.11f * card_unit(quad), radius = 0.04f * cell;
     constexpr float populated = 0.35f; // fraction of cells
     const float time = billboards.seconds;
     const int32_t seed = static_cast<int32_t>(quad.seed * 1000) + 7;
-    const Floats x = (on.across * on.half + 0.2f * cell * std::sin(0.7f * time + quad.seed)) * (1 / cell);
-    const Floats y = (on.along - 2 * billboards.settings.scroll * time) * (1 / cell);
+    const Floats x = (hit.across * hit.half + 0.2f * cell * std::sin(0.7f * time + quad.seed)) * (1 / cell);
+    const Floats y = (hit.along - 2 * billboards.settings.scroll * time) * (1 / cell);
     const Floats fx = floor(x), fy = floor(y);
     const Ints i = truncate(fx), j = truncate(fy);
-    const Floats dx = (x - fx) - mixed(0.3f, 0.7f, random16(i, j, seed));
-    const Floats dy = (y - fy) - mixed(0.3f, 0.7f, random16(i, j, seed + 1));
-    const Floats pixel = (on.t + packet.before) * (0.9f * billboards.pixel);
+    const Floats dx = (x - fx) - lerp(0.3f, 0.7f, random16(i, j, seed));
+    const Floats dy = (y - fy) - lerp(0.3f, 0.7f, random16(i, j, seed + 1));
+    const Floats pixel = (hit.t + packet.before) * (0.9f * billboards.pixel);
     const Floats size = min(max(pixel, radius) * (1 / cell), 0.3f);
     const Floats dim = min(radius * radius / max(pixel * pixel, 1e-12f), 1.0f); // for dots enlarged to a pixel
-    const Floats off = fused(dx, dx, dy * dy) / (size * size);
+    const Floats off = fma(dx, dx, dy * dy) / (size * size);
     const Floats chance = random16(i, j, seed + 2);
     const Floats bright = zero_unless(chance < populated, chance * (1 / populated));
     return bright * dim * max(1.0f - off, 0.0f);
@@ -109,32 +109,32 @@ HWY_INLINE Floats specks(const Billboards& billboards, const CardQuad& quad, con
 
 // Factor on a card's brightness: soft borders, fade in front of surfaces (soft particles), and near, far and edge-on
 // fades.
-HWY_INLINE Floats mask(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
+HWY_INLINE Floats mask(const Billboards& billboards, const CardQuad& quad, const CardHit& hit, const Packet& packet) {
     const BillboardSettings& s = billboards.settings;
-    const Floats away = on.t + packet.before;
-    Floats share = 1.0f - smooth(1 - s.soft, 1, abs(on.across));
-    share = share * smooth(0, 0.06f, on.share) * (1.0f - smooth(0.8f, 1, on.share));
-    if (s.soft_depth > 0) share = share * smooth(0, s.soft_depth, packet.t_max - on.t);
-    if (s.near_fade > 0) share = share * smooth(0.25f * s.near_fade, s.near_fade, away);
-    share = share * (1.0f - smooth(0.5f * s.far_fade, s.far_fade, away));
+    const Floats away = hit.t + packet.before;
+    Floats share = 1.0f - smoothstep(1 - s.soft, 1, abs(hit.across));
+    share = share * smoothstep(0, 0.06f, hit.share) * (1.0f - smoothstep(0.8f, 1, hit.share));
+    if (s.soft_depth > 0) share = share * smoothstep(0, s.soft_depth, packet.t_max - hit.t);
+    if (s.near_fade > 0) share = share * smoothstep(0.25f * s.near_fade, s.near_fade, away);
+    share = share * (1.0f - smoothstep(0.5f * s.far_fade, s.far_fade, away));
     const Floats facing = abs(dot(packet.direction, splat(quad.normal)));
     // Projected width times this factor sums to sin² + cos² = 1 over two crossed cards, from any side.
-    share = share * (quad.crossed ? facing : smooth(0, 0.75f, facing));
+    share = share * (quad.crossed ? facing : smoothstep(0, 0.75f, facing));
     if (fades(billboards.style))
         share = share * max(min((billboards.style.range - away) * (1 / (0.2f * billboards.style.range)), 1.0f), 0.0f);
     return share;
 }
 
 // Length of a ray inside the beam: the chord of its elliptical cross-section, longer at grazing angles.
-HWY_INLINE Floats chord(const CardQuad& quad, const OnCard& on, const Packet& packet) {
+HWY_INLINE Floats chord(const CardQuad& quad, const CardHit& hit, const Packet& packet) {
     const Floats cosine = dot(packet.direction, splat(quad.axis));
     const Floats sine = sqrt(max(1.0f - cosine * cosine, 1e-4f));
-    const Floats a = fused(on.share, quad.width_to.x - quad.width_from.x, quad.width_from.x);
-    const Floats b = fused(on.share, quad.width_to.y - quad.width_from.y, quad.width_from.y);
+    const Floats a = fma(hit.share, quad.width_to.x - quad.width_from.x, quad.width_from.x);
+    const Floats b = fma(hit.share, quad.width_to.y - quad.width_from.y, quad.width_from.y);
     const Floats x = dot(packet.direction, splat(quad.across[0])) / max(a, 1e-6f);
     const Floats y = dot(packet.direction, splat(quad.across[1])) / max(b, 1e-6f);
-    const Floats middle = 2.0f / max(sqrt(fused(x, x, y * y)), 1e-6f);
-    return min(middle, quad.length + 4.0f * on.half / sine);
+    const Floats middle = 2.0f / max(sqrt(fma(x, x, y * y)), 1e-6f);
+    return min(middle, quad.length + 4.0f * hit.half / sine);
 }
 }
 }

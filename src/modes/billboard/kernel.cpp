@@ -30,14 +30,14 @@ Packet make_packet(const Billboards& billboards, const RayBatch& batch) {
 }
 
 // Radiance, per unit of the light's intensity, of a uniformly lit beam in homogeneous fog: J (1 - e^-σc) for a chord c.
-Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCard& on, const Packet& packet) {
+Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const CardHit& hit, const Packet& packet) {
     const Light& light = billboards.snapshot.lights[quad.light];
     const bool sun = is_distant(light);
-    const LightPaths to_light = light_paths(light, on.point), to_eye{packet.origin, packet.direction, on.t};
+    const Segments16 to_light = light_segments(light, hit.point), to_eye{packet.origin, packet.direction, hit.t};
     Floats extinction = 0.0f, depth = 0.0f;
     const std::vector<Medium>& media = billboards.snapshot.media;
     const Vec3s scattered = scattering(media, dot(to_light.direction, packet.direction), [&](size_t m) HWY_ATTR {
-        const Floats here = density16(media[m], on.point) * grey_extinction(media[m].optics);
+        const Floats here = density16(media[m], hit.point) * grey_extinction(media[m].optics);
         extinction = extinction + here;
         return here;
     });
@@ -49,7 +49,7 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCar
     if (!sun) {
         // Within 0.15 units of the light, cards are as bright as at 0.15 units.
         const float reach = std::max(light.radius, 0.15f * card_unit(quad));
-        const Vec3s towards = splat(light.position) - on.point;
+        const Vec3s towards = splat(light.position) - hit.point;
         const Floats square = dot(towards, towards);
         arriving = 1.0f / max(square, reach * reach);
         if (!std::isinf(light.range)) {
@@ -57,7 +57,7 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const OnCar
             arriving = arriving * max(1.0f - share * share, 0.0f);
         }
     }
-    const Floats length = chord(quad, on, packet);
+    const Floats length = chord(quad, hit, packet);
     return scattered * (arriving * exp(-depth) * length * mean_transmittance(extinction * length));
 }
 
@@ -78,9 +78,9 @@ Vec3s veil_light(const Billboards& billboards, const Light& light, const Packet&
     Vec3s sum = splat(vec3(0));
     Floats depth = 0.0f, from = low;
     for (const float share : {1.0f / 9, 4.0f / 9, 1.0f}) {
-        const Floats to = fused(high - low, share, low), middle = 0.5f * (from + to);
-        const LightPaths piece{fused(packet.direction, from, packet.origin), packet.direction, to - from};
-        const LightPaths to_sun = light_paths(light, fused(packet.direction, middle, packet.origin));
+        const Floats to = fma(high - low, share, low), middle = 0.5f * (from + to);
+        const Segments16 piece{fma(packet.direction, from, packet.origin), packet.direction, to - from};
+        const Segments16 to_sun = light_segments(light, fma(packet.direction, middle, packet.origin));
         Floats change = 0.0f, light_depth = 0.0f;
         const std::vector<Medium>& media = billboards.snapshot.media;
         const Vec3s scattered = scattering(media, cosine, [&](size_t m) HWY_ATTR {
@@ -113,16 +113,16 @@ HWY_INLINE Vec3s loaded(const Sixteen (&from)[3]) {
 
 // Adds a card's radiance along the rays to its light's sum; returns the mask factor of each ray.
 HWY_INLINE Floats draw(const Billboards& billboards, const CardQuad& quad, const Packet& packet, LightSum& sum) {
-    const OnCard on = meet(packet, quad);
-    if (!any(on.met)) return 0.0f;
-    const Floats share = zero_unless(on.met, mask(billboards, quad, on, packet)) * quad.share;
+    const CardHit hit = intersect(packet, quad);
+    if (!any(hit.met)) return 0.0f;
+    const Floats share = zero_unless(hit.met, mask(billboards, quad, hit, packet)) * quad.share;
     if (!any(share > 0.0f)) return 0.0f;
-    Floats texture = streaks(billboards, quad, on);
+    Floats texture = streaks(billboards, quad, hit);
     if (billboards.settings.specks > 0)
-        texture = fused(specks(billboards, quad, on, packet), 6 * billboards.settings.specks, texture);
-    const Vec3s light = beam_light(billboards, quad, on, packet) * splat(quad.tint);
-    const Floats brightest = zero_unless(on.met, max(max(light.x, light.y), light.z));
-    const Vec3s total = loaded(sum.cards) + light * zero_unless(on.met, share * texture);
+        texture = fma(specks(billboards, quad, hit, packet), 6 * billboards.settings.specks, texture);
+    const Vec3s light = beam_light(billboards, quad, hit, packet) * splat(quad.tint);
+    const Floats brightest = zero_unless(hit.met, max(max(light.x, light.y), light.z));
+    const Vec3s total = loaded(sum.cards) + light * zero_unless(hit.met, share * texture);
     store(total.x, sum.cards[0].data()), store(total.y, sum.cards[1].data()), store(total.z, sum.cards[2].data());
     store(max(load(sum.brightest.data()), brightest), sum.brightest.data());
     return share;
@@ -145,7 +145,7 @@ void billboard_packet_kernel(const Billboards& billboards, const RayBatch& batch
     const size_t lights = snapshot.lights.size();
     sums.assign(lights, {});
     const Packet packet = make_packet(billboards, batch);
-    const Spread spread = spread_of(packet, billboards.camera);
+    const RayBounds spread = ray_bounds(packet, billboards.camera);
     Floats drawn = 0.0f;
     for (size_t group = 0; group < billboards.groups.size(); ++group)
         for (uint32_t bits = within_reach(billboards.groups[group], spread); bits; bits &= bits - 1) {

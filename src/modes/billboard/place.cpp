@@ -20,7 +20,7 @@ void fit_ellipse(const LightView& view, const std::vector<int>& cells, vec3 cent
     make_frame(axis, u, v);
     float uu = 0, uv = 0, vv = 0;
     for (const int cell : cells) {
-        const vec3 off = view.place(cell) - center;
+        const vec3 off = view.position(cell) - center;
         const float a = glm::dot(off, u), b = glm::dot(off, v);
         uu += a * a, uv += a * b, vv += b * b;
     }
@@ -35,11 +35,11 @@ void fit_ellipse(const LightView& view, const std::vector<int>& cells, vec3 cent
 BeamCard card_of(const Openings& openings, const std::vector<int>& opening) {
     const LightView& view = openings.view;
     const std::vector<Cell>& cells = openings.cells;
-    vec3 place(0);
+    vec3 position(0);
     double from = 0, to = 0, edge = 0;
     int edges = 0;
     for (const int i : opening) {
-        place += view.place(i), from += cells[i].from, to += cells[i].to;
+        position += view.position(i), from += cells[i].from, to += cells[i].to;
         for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
             const int next = view.neighbour(i, dx, dy);
             if (next >= 0 && cells[next].opening == unlit && cells[next].hit > 0 && cells[next].hit < cells[i].hit)
@@ -50,7 +50,7 @@ BeamCard card_of(const Openings& openings, const std::vector<int>& opening) {
     BeamCard card;
     const Light& light = *view.light;
     const bool sun = is_distant(light);
-    const vec3 axis = sun ? light.direction : glm::normalize(place), center = place / count;
+    const vec3 axis = sun ? light.direction : glm::normalize(position), center = position / count;
     // The beam starts at the surfaces around the opening; cells of gaps in the open already start there.
     const float fog = static_cast<float>(from / count), end = static_cast<float>(to / count);
     float start = fog;

@@ -11,7 +11,7 @@
 
 namespace tyndall {
 namespace {
-float smooth(float low, float high, float x) {
+float smoothstep(float low, float high, float x) {
     const float s = std::clamp((x - low) / std::max(high - low, 1e-6f), 0.0f, 1.0f);
     return s * s * (3 - 2 * s);
 }
@@ -112,7 +112,7 @@ Billboards make_billboards(const View& view, const Snapshot& snapshot, const Set
         // Each card's brightness sways with its own frequency and phase.
         const float pace = 0.08f + 0.17f * to_unit(hash(card.seed, 1u)), phase = to_unit(hash(card.seed, 2u));
         const float swing = 0.5f + 0.5f * std::sin(2 * pi * (pace * billboards.seconds + phase));
-        const float inside = smooth(0.5f, 4, off_axis(card, view.camera.position));
+        const float inside = smoothstep(0.5f, 4, off_axis(card, view.camera.position));
         const float share =
             (1 - settings.of<BillboardSettings>().sway * swing) * inside * settings.of<BillboardSettings>().brightness;
         if (share > 0)

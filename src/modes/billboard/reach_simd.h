@@ -14,30 +14,30 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 // Bounds of the packet's rays in the coordinates of CardGroup, and the planar depth of the farthest end.
-struct Spread {
+struct RayBounds {
     vec3 center, half;
     float farthest;
 };
 
-HWY_INLINE Spread spread_of(const Packet& packet, const Camera& camera) {
+HWY_INLINE RayBounds ray_bounds(const Packet& packet, const Camera& camera) {
     const Vec3s place = packet.origin - splat(camera.position);
     const bool flat = camera.ortho_height > 0;
     const Vec3s& across = flat ? place : packet.direction;
     const Floats forward = dot(packet.direction, splat(camera.forward));
     const Floats axes[3] = {dot(across, splat(camera.right)), dot(across, splat(camera.up)), flat ? 1.0f : forward};
-    Spread spread;
+    RayBounds spread;
     for (int axis = 0; axis < 3; ++axis) {
         const float low = least(axes[axis]), high = most(axes[axis]);
         spread.center[axis] = 0.5f * (low + high);
         // Padded for rounding errors.
         spread.half[axis] = 0.5f * (high - low) + 1e-6f * std::max(std::abs(low), std::abs(high));
     }
-    spread.farthest = most(fused(forward, packet.t_max, dot(place, splat(camera.forward))));
+    spread.farthest = most(fma(forward, packet.t_max, dot(place, splat(camera.forward))));
     return spread;
 }
 
 // Quads of a group that some ray of the packet may hit, as a bit mask.
-HWY_INLINE uint32_t within_reach(const CardGroup& group, const Spread& spread) {
+HWY_INLINE uint32_t within_reach(const CardGroup& group, const RayBounds& spread) {
     Mask16 seen = load(group.nearest) <= spread.farthest;
     for (const auto& edge : group.edges) {
         const Vec3s planes{load(edge[0]), load(edge[1]), load(edge[2])};

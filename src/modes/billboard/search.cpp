@@ -91,8 +91,8 @@ float largest_share(const Openings& openings) {
 
 float area(const LightView& view) { return glm::length(view.right) * glm::length(view.up); }
 
-void look(const Snapshot& snapshot, Openings& into) {
-    into.cells = looked(into.view, snapshot), into.found = openings(into.view, into.cells);
+void search(const Snapshot& snapshot, Openings& into) {
+    into.cells = trace_cells(into.view, snapshot), into.found = openings(into.view, into.cells);
 }
 }
 
@@ -100,7 +100,7 @@ void look(const Snapshot& snapshot, Openings& into) {
 std::vector<std::vector<int>> cut(const LightView& view, const std::vector<int>& cells, int count) {
     if (count <= 1) return {cells};
     std::vector<vec3> places;
-    for (const int cell : cells) places.push_back(view.place(cell));
+    for (const int cell : cells) places.push_back(view.position(cell));
     std::vector<vec3> centers{places[places.size() / 2]};
     std::vector<float> away(places.size(), infinity);
     while (static_cast<int>(centers.size()) < count) {
@@ -134,20 +134,20 @@ Openings find_openings(const Light& light, const Snapshot& snapshot) {
     constexpr int rays = 128; // across the light's grid
     const int first = sun ? (rays + 1) / 2 : rays;
     Openings result{light_view(light, snapshot, first, false), {}, {}};
-    look(snapshot, result);
+    search(snapshot, result);
     result.large = large_share * static_cast<float>(result.cells.size());
     if (!sun || result.found.empty()) return result;
 
     const LightView wide = result.view;
     result.view = closer_view(wide, result.found, rays);
     result.large *= 4 * area(wide) / std::max(area(result.view), 1e-20f);
-    look(snapshot, result);
+    search(snapshot, result);
     const float share = largest_share(result);
     if (share <= open_share) return result;
 
     result.open = share;
     result.view = light_view(light, snapshot, rays, true);
-    result.cells = looked(result.view, snapshot), result.found = gaps(result.view, result.cells);
+    result.cells = trace_cells(result.view, snapshot), result.found = gaps(result.view, result.cells);
     result.large = gap_share * static_cast<float>(result.cells.size());
     return result;
 }

@@ -13,7 +13,7 @@ struct LightView {
     float reach = 0;                 // length of the rays
 
     Ray ray(int cell) const;
-    vec3 place(int cell) const;                    // of a cell: on the grid's plane (sun) or the unit sphere
+    vec3 position(int cell) const;                 // of a cell: on the grid's plane (sun) or the unit sphere
     int neighbour(int cell, int dx, int dy) const; // -1 = none
     float cell_size() const;                       // meters (sun) or radians
 };
@@ -28,7 +28,7 @@ struct Cell {
     float from = 0, to = 0; // start and end of the fog in front of it
     int opening = unlit;
 };
-std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot);
+std::vector<Cell> trace_cells(const LightView& view, const Snapshot& snapshot);
 
 // The openings found, each with its cells in ascending order.
 struct Openings {

@@ -40,7 +40,7 @@ Ray LightView::ray(int cell) const {
     return {light->position, glm::normalize(direction), reach};
 }
 
-vec3 LightView::place(int cell) const {
+vec3 LightView::position(int cell) const {
     const Ray at = ray(cell);
     return is_distant(*light) ? at.origin : at.direction;
 }
@@ -89,7 +89,7 @@ LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool l
     return view;
 }
 
-std::vector<Cell> looked(const LightView& view, const Snapshot& snapshot) {
+std::vector<Cell> trace_cells(const LightView& view, const Snapshot& snapshot) {
     std::vector<Cell> cells(static_cast<size_t>(view.n) * view.n);
     const Occluders* ends = ends_of(*view.light, snapshot);
     const int packets = static_cast<int>((cells.size() + 15) / 16);

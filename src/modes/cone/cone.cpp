@@ -106,7 +106,7 @@ ConeLight cone_light(const Light& light, const Snapshot& snapshot, const Cone& c
     if (has_cone(light) && light.outer_cone > 0)
         result.near_plane = static_cast<float>(cone.settings.near_radius / std::tan(double(light.outer_cone)));
     result.light.position = vec3(0);
-    if (light.filter) result.filter_level = blurred_level(*light.filter, filter_node_angle(light));
+    if (light.filter) result.filter_level = gobo_mip_level(*light.filter, filter_node_angle(light));
     result.linear_range = std::isinf(light.range) ? glm::length(snapshot.bounds.size()) : light.range;
     return result;
 }
@@ -118,7 +118,7 @@ float AnchoredFog::extinction() const {
     return sum;
 }
 
-float filter_node_angle(const Light& light) { return whole_angle(light) / (8 * filter_pieces_of_ray); }
+float filter_node_angle(const Light& light) { return cone_angle(light) / (8 * filter_pieces_of_ray); }
 
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
     Snapshot seen =
@@ -148,7 +148,7 @@ ScatterFunction prepare_cone(const View& view, const Snapshot& snapshot, const S
     };
     const size_t lights = snapshot.lights.size();
     scatter = with_lamps_as_emission(lights, cone->lights.size() - lights, std::move(scatter));
-    if (history) follow(*history, view, snapshot, settings);
+    if (history) update_history(*history, view, snapshot, settings);
     if (settings.of<ConeSettings>().resolution == Resolution::full && !history) return scatter;
     return from_fog_buffer(view, snapshot, {settings.of<ConeSettings>().resolution}, std::move(scatter), history);
 }
@@ -165,7 +165,7 @@ Mode cone_mode() {
             .set_quality = set_cone_quality,
             .rungs = cone_rungs,
             .color = "#56B4E9",
-            .remembers = true,
+            .uses_history = true,
             .interactive = true,
             .resolves_density = false,
             .casts_shadows = false};

@@ -14,7 +14,7 @@ namespace tyndall::HWY_NAMESPACE {
 // a·b - c·d to within two rounding errors of the result, despite cancellation (Kahan).
 HWY_INLINE Floats difference_of_products(const Floats& a, const Floats& b, const Floats& c, const Floats& d) {
     const Floats product = c * d;
-    return fused(a, b, -product) - fused(c, d, -product);
+    return fma(a, b, -product) - fma(c, d, -product);
 }
 
 HWY_INLINE Vec3s cross(const Vec3s& a, const Vec3s& b) {
@@ -26,10 +26,10 @@ HWY_INLINE Vec3s cross(const Vec3s& a, const Vec3s& b) {
 HWY_INLINE Floats angle_of(const Floats& y, const Floats& x) {
     const Mask16 steep = y > x;
     const Floats z = min(x, y) / max(max(x, y), 1e-37f);
-    const Floats w = z / (1.0f + sqrt(fused(z, z, 1.0f))), w2 = w * w;
-    Floats p = fused(w2, -1.0f / 15, 1.0f / 13);
-    p = fused(p, -w2, 1.0f / 11), p = fused(p, -w2, 1.0f / 9), p = fused(p, -w2, 1.0f / 7);
-    p = fused(p, -w2, 1.0f / 5), p = fused(p, -w2, 1.0f / 3), p = fused(p, -w2, 1.0f);
+    const Floats w = z / (1.0f + sqrt(fma(z, z, 1.0f))), w2 = w * w;
+    Floats p = fma(w2, -1.0f / 15, 1.0f / 13);
+    p = fma(p, -w2, 1.0f / 11), p = fma(p, -w2, 1.0f / 9), p = fma(p, -w2, 1.0f / 7);
+    p = fma(p, -w2, 1.0f / 5), p = fma(p, -w2, 1.0f / 3), p = fma(p, -w2, 1.0f);
     const Floats angle = 2.0f * w * p;
     return select(steep, 0.5f * pi - angle, angle);
 }
@@ -37,10 +37,10 @@ HWY_INLINE Floats angle_of(const Floats& y, const Floats& x) {
 // cos u and sin(u)/u for 0 <= u <= π/2.
 HWY_INLINE void cosine_and_sinc(const Floats& u, Floats& cosine, Floats& sinc) {
     const Floats u2 = u * u;
-    Floats c = fused(u2, 1.0f / 479001600, -1.0f / 3628800), s = fused(u2, -1.0f / 39916800, 1.0f / 362880);
-    c = fused(c, u2, 1.0f / 40320), c = fused(c, u2, -1.0f / 720), c = fused(c, u2, 1.0f / 24);
-    s = fused(s, u2, -1.0f / 5040), s = fused(s, u2, 1.0f / 120), s = fused(s, u2, -1.0f / 6);
-    cosine = fused(fused(c, u2, -0.5f), u2, 1.0f), sinc = fused(s, u2, 1.0f);
+    Floats c = fma(u2, 1.0f / 479001600, -1.0f / 3628800), s = fma(u2, -1.0f / 39916800, 1.0f / 362880);
+    c = fma(c, u2, 1.0f / 40320), c = fma(c, u2, -1.0f / 720), c = fma(c, u2, 1.0f / 24);
+    s = fma(s, u2, -1.0f / 5040), s = fma(s, u2, 1.0f / 120), s = fma(s, u2, -1.0f / 6);
+    cosine = fma(fma(c, u2, -0.5f), u2, 1.0f), sinc = fma(s, u2, 1.0f);
 }
 
 // Rays relative to a light at the origin: the closest point, its distance, and the components of the light's axis in
@@ -73,10 +73,10 @@ HWY_INLINE SeenRays seen_rays(const Vec3s& origin, const Vec3s& rest, const Vec3
 HWY_INLINE Interval<Floats> inside_wedge(const SeenRays& seen, float cosine, float sine) {
     const Floats across = abs(seen.axis_across), room = (sine - across) * (sine + across);
     const Floats turn = sqrt(max(room, 0.0f));
-    const Floats low_x = fused(seen.axis_out, cosine, seen.axis_along * turn);
-    const Floats low_y = fused(seen.axis_along, cosine, -(seen.axis_out * turn));
-    const Floats high_x = fused(seen.axis_out, cosine, -(seen.axis_along * turn));
-    const Floats high_y = fused(seen.axis_along, cosine, seen.axis_out * turn);
+    const Floats low_x = fma(seen.axis_out, cosine, seen.axis_along * turn);
+    const Floats low_y = fma(seen.axis_along, cosine, -(seen.axis_out * turn));
+    const Floats high_x = fma(seen.axis_out, cosine, -(seen.axis_along * turn));
+    const Floats high_y = fma(seen.axis_along, cosine, seen.axis_out * turn);
     const Mask16 low_ahead = low_x > 0.0f, high_ahead = high_x > 0.0f;
     // For a half-space (π/2) parallel to the ray, neither side is ahead.
     const Mask16 met = (room > 0.0f) & (low_ahead | high_ahead | (seen.axis_out > 0.0f));
@@ -96,7 +96,7 @@ struct AnglePiece {
         sign = select(piece.low + piece.high < 0.0f, -1.0f, 1.0f);
         const Floats a = abs(piece.low), b = abs(piece.high);
         near = min(a, b), far = max(a, b);
-        const Floats length = piece.high - piece.low, x = max(fused(far, near, squared), 1e-30f);
+        const Floats length = piece.high - piece.low, x = max(fma(far, near, squared), 1e-30f);
         const Floats y = seen.distance * length;
         angle = angle_of(y, x);
         per_distance = select(y < x * 1e-3f, length / x, angle / max(seen.distance, 1e-30f));
@@ -105,10 +105,10 @@ struct AnglePiece {
         Floats cosine, sinc;
         cosine_and_sinc(angle * share, cosine, sinc);
         const Floats sine = per_distance * share * sinc;
-        return sign * fused(sine, -squared, far * cosine) / fused(sine, far, cosine);
+        return sign * fma(sine, -squared, far * cosine) / fma(sine, far, cosine);
     }
     // Alternative nodes, denser near the closest point: ds = 3 share² · length · dshare.
-    HWY_INLINE Floats cubic(float share) const { return sign * fused(far - near, share * share * share, near); }
+    HWY_INLINE Floats cubic(float share) const { return sign * fma(far - near, share * share * share, near); }
 };
 }
 HWY_AFTER_NAMESPACE();

@@ -32,10 +32,10 @@ bool is_linear(const Packet& packet) {
 // which side of a face they lie.
 void add_linear_piece(const EvenLight& even, const Interval<Floats>& piece) {
     const Floats length = piece.high - piece.low;
-    const Floats early = even.depth_at(fused(length, 0.25f, piece.low));
-    const Floats late = even.depth_at(fused(length, 0.75f, piece.low));
+    const Floats early = even.depth_at(fma(length, 0.25f, piece.low));
+    const Floats late = even.depth_at(fma(length, 0.75f, piece.low));
     const Floats half = abs(late - early), least = min(early, late) - 0.5f * half;
-    add_node(even.packet, fused(length, 0.5f, piece.low), length * exp(-least) * mean_transmittance(2.0f * half),
+    add_node(even.packet, fma(length, 0.5f, piece.low), length * exp(-least) * mean_transmittance(2.0f * half),
              even.cosine, even.light);
 }
 
@@ -45,7 +45,7 @@ void add_curved_piece(const EvenLight& even, const Interval<Floats>& piece) {
     if (!any(bright)) return;
     const int count = node_count(even.packet, 0, zero_unless(bright, abs(last - first)), zero_unless(bright, length));
     for (const QuadratureNode& node : gauss_legendre(count)) {
-        const Floats t = fused(length, static_cast<float>(node.at), piece.low);
+        const Floats t = fma(length, static_cast<float>(node.at), piece.low);
         const Floats weight = length * static_cast<float>(node.weight) * fade(even.packet, t);
         add_node(even.packet, t, weight * exp(-even.depth_at(t)), even.cosine, even.light);
     }
@@ -77,7 +77,7 @@ bool add_even(Packet& packet, const ConeLight* light) {
 template<class Color> Vec3s light_of_sums(const Packet& packet, const Color& color) {
     Vec3s light = splat(vec3(0));
     for (size_t m = 0; m < packet.media(); ++m)
-        light = fused(splat(color(m)), load(packet.scratch.sums[m].data()), light);
+        light = fma(splat(color(m)), load(packet.scratch.sums[m].data()), light);
     return light;
 }
 
@@ -92,7 +92,7 @@ float brightest(const std::vector<vec3>& colors) {
 }
 
 // Emission and ambient light. For a single medium ∫ σ e^-τ dt = 1 - e^-τ, whatever its density.
-Vec3s glow_light(Packet& packet, const Floats& depth, const RayBatch& batch) {
+Vec3s other_light(Packet& packet, const Floats& depth, const RayBatch& batch) {
     const Cone& cone = packet.cone;
     if (!(brightest(cone.ambient) > 0) && !(brightest(cone.emission) > 0)) return splat(vec3(0));
     if (packet.media() == 1 && cone.style.range >= no_range)
@@ -144,7 +144,7 @@ void cone_packet_kernel(const Cone& cone, const RayBatch& batch, std::span<Scatt
     Packet eye = make_packet(cone, cone.fog, batch, scratch);
     find_fog(eye);
     const Floats depth = view_depth(eye, eye.t_max);
-    Vec3s radiance = glow_light(eye, depth, batch);
+    Vec3s radiance = other_light(eye, depth, batch);
     Floats unshadowed = 0.0f;
     for (size_t l = 0; media > 0 && l < cone.lights.size(); ++l) {
         const ConeLight& light = cone.lights[l];

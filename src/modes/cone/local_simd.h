@@ -34,7 +34,7 @@ Floats dust(const Cone& cone, const Vec3s& world) {
     store(world.x, x.data()), store(world.y - cone.noise_rise, y.data()), store(world.z, z.data());
     fractal_noise(noise, 0, x, y, z, values);
     const Floats swing = max(min(load(values.data()) * 4.0f, 1.0f), -1.0f);
-    return fused(swing, cone.settings.noise, 1.0f);
+    return fma(swing, cone.settings.noise, 1.0f);
 }
 
 // Intensity factor of a local light at s, without the inverse square: range window or linear attenuation, and spot
@@ -49,9 +49,9 @@ HWY_INLINE Floats strength(const Packet& packet, const ConeLight& light, const S
     if (packet.cone.settings.attenuation == ConeAttenuation::linear)
         amount = max(1.0f - distance * (1 / light.linear_range), 0.0f);
     if (has_cone(light.light)) {
-        const Floats aside = fused(s, seen.axis_out, -(seen.distance * seen.axis_along)) * inverse;
-        const Floats cosine = fused(s, seen.axis_along, seen.distance * seen.axis_out) * inverse;
-        amount = amount * edge(packet, light.edges, fused(aside, aside, seen.axis_across * seen.axis_across), cosine);
+        const Floats aside = fma(s, seen.axis_out, -(seen.distance * seen.axis_along)) * inverse;
+        const Floats cosine = fma(s, seen.axis_along, seen.distance * seen.axis_out) * inverse;
+        amount = amount * edge(packet, light.edges, fma(aside, aside, seen.axis_across * seen.axis_across), cosine);
     }
     return amount;
 }
@@ -104,7 +104,7 @@ void add_filter_breaks(const Packet& packet, const SeenRays& seen, const Interva
     const Floats away = max(seen.distance, 1e-12f);
     const Floats from = atan(stretch.low / away), to = atan(stretch.high / away);
     for (int i = 1; i < filter_pieces_of_ray; ++i)
-        add_break(packet, away * tan(fused(to - from, static_cast<float>(i) / filter_pieces_of_ray, from)));
+        add_break(packet, away * tan(fma(to - from, static_cast<float>(i) / filter_pieces_of_ray, from)));
 }
 
 void add_light_breaks(const Packet& packet, const ConeLight& light, const SeenRays& seen,
@@ -135,7 +135,7 @@ void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& see
     const AnglePiece angles(piece, seen);
     const Floats middle = 0.5f * (piece.low + piece.high);
     const Floats length = piece.high - piece.low;
-    const Mask16 capped = fused(middle, middle, seen.squared) < light.reach * light.reach;
+    const Mask16 capped = fma(middle, middle, seen.squared) < light.reach * light.reach;
     const bool has_cap = any(capped),
                inverse_square = packet.cone.settings.attenuation == ConeAttenuation::inverse_square;
     const Floats whole = select(capped, length * (1 / (light.reach * light.reach)), angles.per_distance);
@@ -143,14 +143,14 @@ void add_piece(const Packet& packet, const ConeLight& light, const SeenRays& see
         const float at = static_cast<float>(node.at), weight = static_cast<float>(node.weight);
         Floats s = angles.place(at);
         if (has_cap) s = select(capped, angles.cubic(at), s);
-        const Floats square = max(fused(s, s, seen.squared), 1e-30f), inverse = 1.0f / sqrt(square);
+        const Floats square = max(fma(s, s, seen.squared), 1e-30f), inverse = 1.0f / sqrt(square);
         const Floats distance = square * inverse, t = seen.nearest + s;
         const Floats share = has_cap ? select(capped, 3 * at * at * weight, weight) : Floats(weight);
         Floats amount = whole * share * strength(packet, light, seen, s, distance, inverse);
         if (!inverse_square) amount = amount * select(capped, light.reach * light.reach, square);
         const Vec3s point = packet.at(t);
         const Floats depth =
-            fused(view_depth(packet, t), packet.cone.style.view_depth, light_depth(packet, light, point, distance));
+            fma(view_depth(packet, t), packet.cone.style.view_depth, light_depth(packet, light, point, distance));
         amount = amount * exp(-depth) * fade(packet, t);
         if (light.light.filter) amount = amount * filter_factor(packet, light, point, distance);
         if (packet.cone.settings.noise > 0) amount = amount * dust(packet.cone, point + splat(vec3(packet.fog.anchor)));
@@ -176,9 +176,9 @@ bool add_local(Packet& packet, const ConeLight& light) {
     sort_breaks(packet, stretch);
 
     const auto depth_at = [&](const Floats& s) HWY_ATTR {
-        const Floats distance = sqrt(fused(s, s, seen.squared)), t = seen.nearest + s;
-        return fused(view_depth(packet, t), packet.cone.style.view_depth,
-                     light_depth(packet, light, packet.at(t), distance));
+        const Floats distance = sqrt(fma(s, s, seen.squared)), t = seen.nearest + s;
+        return fma(view_depth(packet, t), packet.cone.style.view_depth,
+                   light_depth(packet, light, packet.at(t), distance));
     };
     const std::vector<Lanes>& breaks = packet.scratch.breaks;
     Floats before = 0.0f;

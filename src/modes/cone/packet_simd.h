@@ -40,7 +40,7 @@ struct Packet {
     int channel = 0;          // color channel, for a light with a colored gobo
 
     HWY_INLINE size_t media() const { return fog.media.size(); }
-    HWY_INLINE Vec3s at(const Floats& t) const { return fused(direction, t, origin); }
+    HWY_INLINE Vec3s at(const Floats& t) const { return fma(direction, t, origin); }
 };
 
 Packet make_packet(const Cone& cone, const AnchoredFog& fog, const RayBatch& batch, Scratch& scratch) {
@@ -88,8 +88,8 @@ HWY_INLINE Floats view_depth(const Packet& packet, const Floats& t) {
         const Floats to = min(t, load(packet.scratch.to[m].data()));
         Floats depth = max(to - from, 0.0f) * grey_extinction(medium.optics);
         if (medium.density.kind == DensityKind::height) {
-            const Floats y0 = fused(packet.direction.y, from, packet.origin.y);
-            const Floats y1 = fused(packet.direction.y, to, packet.origin.y);
+            const Floats y0 = fma(packet.direction.y, from, packet.origin.y);
+            const Floats y1 = fma(packet.direction.y, to, packet.origin.y);
             depth = zero_unless(depth > 0.0f, depth * mean_height_density(medium, y0, y1));
         }
         sum = sum + depth;
@@ -103,7 +103,7 @@ HWY_INLINE Floats extinction(const Packet& packet, size_t m, const Floats& t) {
     const Mask16 inside = (t >= load(packet.scratch.from[m].data())) & (t <= load(packet.scratch.to[m].data()));
     Floats value = grey_extinction(medium.optics);
     if (medium.density.kind == DensityKind::height) {
-        const Floats height = max(fused(packet.direction.y, t, packet.origin.y) - medium.density.height_base, 0.0f);
+        const Floats height = max(fma(packet.direction.y, t, packet.origin.y) - medium.density.height_base, 0.0f);
         value = value * exp(height * (-1 / medium.density.height_falloff));
     }
     return packet.media() == 1 ? value : zero_unless(inside, value);

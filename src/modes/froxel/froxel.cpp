@@ -31,7 +31,7 @@ namespace tyndall {
 namespace {
 struct FroxelFrame {
     FroxelScene scene;
-    FroxelPicture picture;
+    FroxelBuffer picture;
     bool has_history = false;
     int frame = 0;
 
@@ -141,7 +141,7 @@ FroxelSums sums_with_history(FroxelFrame& frame, FroxelStatics& statics, std::sh
     if (frame.frame == 0 || !memory) {
         light = fill_still_froxels(frame.scene, statics, {.beams = beams});
         sums = integrate_froxels(statics.grid, statics.tiles, light, view_depth);
-        clean(statics.grid, statics.tiles, light);
+        clear_invalid(statics.grid, statics.tiles, light);
     } else {
         Reprojection past = remembered(std::exchange(memory, nullptr), statics);
         light = std::move(past.light);
@@ -169,7 +169,7 @@ bool has(const FroxelScene& scene, OtherLight light) {
 }
 
 void make_parts(FroxelFrame& frame) {
-    const FroxelPicture& picture = frame.picture;
+    const FroxelBuffer& picture = frame.picture;
     const size_t lights = frame.scene.snapshot.lights.size();
     for (size_t part = 0; part < part_count(lights); ++part) {
         if (part >= lights ? !has(frame.scene, OtherLight{part - lights}) : frame.scene.is_beam(part)) continue;
@@ -206,13 +206,13 @@ void look_up_with_parts(FroxelFrame& frame, const RayBatch& batch, std::span<Sca
 
 ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
     auto frame = std::make_shared<FroxelFrame>();
-    if (history) frame->frame = follow(*history, view, snapshot, settings);
+    if (history) frame->frame = update_history(*history, view, snapshot, settings);
     if (settings.of<FroxelSettings>().history == 0) frame->frame = 0;
     FieldLight fields = set_scene(view, snapshot, settings, frame->scene);
 
     const FroxelHistory* memory = history ? history->froxels.get() : nullptr;
     FroxelStatics statics =
-        look_at_scene(view, frame->scene.snapshot, settings.of<FroxelSettings>(), memory ? &memory->statics : nullptr);
+        make_statics(view, frame->scene.snapshot, settings.of<FroxelSettings>(), memory ? &memory->statics : nullptr);
     if (statics.grid.faces.empty()) { // no fog in view
         if (history) history->froxels = nullptr;
         return with_field_light(std::move(fields), [](const RayBatch&, std::span<Scatter> results) {
@@ -223,7 +223,7 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     set_shadows(*frame, statics);
     set_pixel_shadows(view, frame->scene);
 
-    FroxelPicture& picture = frame->picture;
+    FroxelBuffer& picture = frame->picture;
     picture.lookup = settings.of<FroxelSettings>().lookup, picture.view_depth = settings.style.view_depth;
     picture.grid = statics.grid, picture.tiles = statics.tiles;
     picture.beams = make_froxel_beams(frame->scene, picture.grid);
@@ -254,7 +254,7 @@ Mode froxel_mode() {
             .set_quality = set_froxel_quality,
             .rungs = froxel_rungs,
             .color = "#E69F00",
-            .remembers = true,
+            .uses_history = true,
             .adds_fluence = true,
             .interactive = true};
 }

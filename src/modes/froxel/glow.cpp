@@ -5,7 +5,7 @@
 #include "trace/view.h"
 
 namespace tyndall {
-float glow_angle(const Phase& phase) { return 0.77f * (1 - narrowest_lobe(phase)); }
+float glow_angle(const Phase& phase) { return 0.77f * (1 - narrowest_g(phase)); }
 
 float tile_angle(const View& view, int tile) {
     if (view.camera.ortho_height > 0 || tile == 1) return 0;

@@ -51,8 +51,8 @@ bool same(const std::vector<Medium>& a, const std::vector<Medium>& b) {
 }
 }
 
-FroxelStatics look_at_scene(const View& view, const Snapshot& snapshot, const FroxelSettings& settings,
-                            const FroxelStatics* before) {
+FroxelStatics make_statics(const View& view, const Snapshot& snapshot, const FroxelSettings& settings,
+                           const FroxelStatics* before) {
     FroxelStatics statics;
     statics.media = snapshot.media, statics.occluders = snapshot.occluders;
     statics.same_view = before && before->grid.picture == view.size && before->grid.tile == settings.tile &&

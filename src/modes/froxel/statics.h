@@ -23,8 +23,8 @@ struct FroxelStatics {
 
 // The statics of a frame, shared with those of the previous frame (may be null) where nothing has changed. `snapshot`:
 // with the settings applied. The grid has no slices if no fog is in view.
-FroxelStatics look_at_scene(const View& view, const Snapshot& snapshot, const FroxelSettings& settings,
-                            const FroxelStatics* before);
+FroxelStatics make_statics(const View& view, const Snapshot& snapshot, const FroxelSettings& settings,
+                           const FroxelStatics* before);
 
 // Same as fill_froxels(), but reuses stored extinctions, or stores them for later frames.
 FroxelLight fill_still_froxels(const FroxelScene& scene, FroxelStatics& statics, FillPass pass);

@@ -138,14 +138,14 @@ FroxelTiles make_froxel_tiles(const FroxelGrid& grid, const Snapshot& snapshot) 
 }
 
 void set_trust(const FroxelGrid& grid, FroxelTiles& tiles) {
-    tiles.trusted.resize(grid.tiles()), tiles.distrust.resize(grid.tiles());
+    tiles.trusted.resize(grid.tiles()), tiles.trust_falloff.resize(grid.tiles());
     tiles.trusted_around.assign(grid.tiles(), infinity);
     for (size_t tile = 0; tile < grid.tiles(); ++tile) {
         const float far = tiles.farthest[tile];
         const size_t k = static_cast<size_t>(slice_of(grid, far));
         const float slack = std::max(grid.faces[k + 1] - grid.faces[k], far - tiles.nearest[tile]);
         tiles.trusted[tile] = far + 0.5f * slack;
-        tiles.distrust[tile] = std::isinf(far) ? 0.0f : 1 / slack;
+        tiles.trust_falloff[tile] = std::isinf(far) ? 0.0f : 1 / slack;
     }
     parallel_for(grid.size.y, [&](int64_t row) {
         const int y = static_cast<int>(row);

@@ -12,9 +12,9 @@ struct FroxelTiles {
     std::vector<float> farthest;  // likewise: what lies beyond is hidden
     std::vector<int32_t> deepest; // per tile, the ray that sees farthest
 
-    // Set by set_trust(). A tile's sums have weight 1 up to the planar depth `trusted`; beyond, it falls by `distrust`
-    // per meter.
-    std::vector<float> trusted, distrust;
+    // Set by set_trust(). A tile's sums have weight 1 up to the planar depth `trusted`; beyond, it falls by
+    // `trust_falloff` per meter.
+    std::vector<float> trusted, trust_falloff;
     std::vector<float> trusted_around; // minimum of `trusted` over the 4×4 tiles at offsets -1 to 2
 
     size_t rays() const { return offsets.size(); }

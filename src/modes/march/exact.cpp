@@ -124,7 +124,7 @@ dvec3 light_of_field(RayMarch& on, const Medium& field) {
 struct OtherSums {
     dvec3 ambient{0}, emission{0};
 };
-OtherSums glow(RayMarch& on) {
+OtherSums other_light(RayMarch& on) {
     const FogPieces& fog = on.scratch.fog;
     OtherSums sum;
     at_nodes(on, [&](size_t piece, double t, double weight) {
@@ -141,7 +141,7 @@ OtherSums glow(RayMarch& on) {
 }
 
 // Multiply scattered light, in steps no longer than a cell of the fluence grid.
-dvec3 scattered_before(RayMarch& on) {
+dvec3 multiply_scattered(RayMarch& on) {
     const FogPieces& fog = on.scratch.fog;
     const FluenceGrid& grid = *on.frame.fluence;
     const double longest = std::exchange(on.longest, std::min<double>(on.longest, grid.cell));
@@ -352,9 +352,9 @@ void march_ray(const SingleScattering& frame, const RayBatch& batch, size_t ray_
         sum += light;
         if (!batch.parts.empty()) batch.part(ray_index, index) += vec3(light);
     };
-    const auto [ambient, emission] = glow(on);
+    const auto [ambient, emission] = other_light(on);
     add(batch.index_of(OtherLight::ambient), ambient), add(batch.index_of(OtherLight::emission), emission);
-    if (frame.fluence) add(batch.index_of(OtherLight::multiple), scattered_before(on));
+    if (frame.fluence) add(batch.index_of(OtherLight::multiple), multiply_scattered(on));
     const std::vector<Light>& lights = frame.snapshot.lights;
     for (size_t l = 0; l < lights.size(); ++l) add(l, light_from(on, batch, ray_index, l));
     result.radiance = vec3(sum);

@@ -65,7 +65,7 @@ Points step_points(const Packet& packet, size_t k, const float* jitter) {
         at[lane] = step.low + jitter[lane] * length[lane];
     }
     Points points;
-    points.position = fused(packet.direction, load(at), packet.origin);
+    points.position = fma(packet.direction, load(at), packet.origin);
     points.length = load(length);
     points.active = points.length > 0.0f;
     return points;
@@ -76,20 +76,20 @@ Floats visible_share(const SingleScattering& frame, const Light& light, const Po
                      const LightSamples& light_at, const Mask16& wanted, const RayBatch& batch, size_t step,
                      size_t light_index) {
     const LightShadows& shadows = frame.shadows[light_index];
-    if (shadows.by == ShadowsBy::maps) return lit_share16(*shadows.map, points.position);
-    if (shadows.by == ShadowsBy::none) return 1.0f;
+    if (shadows.by == ShadowMethod::maps) return lit_fraction16(*shadows.map, points.position);
+    if (shadows.by == ShadowMethod::none) return 1.0f;
     const auto key = [&](size_t lane) {
         return hash(batch.ids[lane], static_cast<uint32_t>(step), static_cast<uint32_t>(light_index));
     };
-    return share_by_rays(*shadow_casters(light, frame.snapshot), light, points.position, light_at, wanted,
-                         frame.light_points, key);
+    return traced_visibility(*shadow_casters(light, frame.snapshot), light, points.position, light_at, wanted,
+                             frame.light_points, key);
 }
 
 // Light scattered towards the eye from one light, per meter: Σ over media of σs p, times the arriving light.
 Vec3s scattered_from(const SingleScattering& frame, size_t light_index, const Points& points, const Packet& packet,
                      const RayBatch& batch, size_t step) {
     const Light& light = frame.snapshot.lights[light_index];
-    const LightSamples light_at = arriving(light, frame.cones[light_index], points.position);
+    const LightSamples light_at = arrival16(light, frame.cones[light_index], points.position);
     Mask16 wanted = points.active & (light_at.amount > 0.0f);
     if (!any(wanted)) return splat(vec3(0));
     const Floats share = visible_share(frame, light, points, light_at, wanted, batch, step, light_index);
@@ -152,10 +152,12 @@ void march_packet_kernel(const SingleScattering& frame, const RayBatch& batch, s
         const auto extinction_of = [&](size_t m) HWY_ATTR { return packet.extinction(m); };
         const FluenceGrid* fluence = frame.fluence.get();
         totals.radiance =
-            totals.radiance + glow(frame.snapshot, fluence, points.position, packet.direction, extinction_of) * weight;
+            totals.radiance +
+            other_source(frame.snapshot, fluence, points.position, packet.direction, extinction_of) * weight;
         for (size_t i = 0; !batch.parts.empty() && i < other_lights; ++i) {
             const OtherLight other{i};
-            add_part(glow_of(other, frame.snapshot, fluence, points.position, packet.direction, extinction_of) * weight,
+            add_part(other_source(other, frame.snapshot, fluence, points.position, packet.direction, extinction_of) *
+                         weight,
                      batch.index_of(other), batch);
         }
         for (size_t light = 0; light < light_count; ++light) {

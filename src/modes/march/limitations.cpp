@@ -31,7 +31,7 @@ void add_visibility(const View& view, const Snapshot& snapshot, const Settings& 
     if (exact)
         for (const Light& light : snapshot.lights)
             if (const auto& casters = shadow_casters(light, snapshot);
-                casters && exact_shadows(view, light, *casters, room) == ShadowsBy::rays)
+                casters && exact_shadows(view, light, *casters, room) == ShadowMethod::rays)
                 limitations.push_back({Severity::info,
                                        &limitation::sampled_shadows,
                                        Subject::light,

@@ -15,28 +15,28 @@
 
 namespace tyndall {
 namespace {
-ShadowsBy shadows_by(const View& view, Visibility visibility, const Light& light, const Occluders& occluders,
-                     bool room) {
+ShadowMethod shadow_method(const View& view, Visibility visibility, const Light& light, const Occluders& occluders,
+                           bool room) {
     switch (visibility) {
     case Visibility::off:
-        return ShadowsBy::none;
+        return ShadowMethod::none;
     case Visibility::rays:
-        return ShadowsBy::rays;
+        return ShadowMethod::rays;
     case Visibility::maps:
-        return ShadowsBy::maps;
+        return ShadowMethod::maps;
     case Visibility::intervals:
         return exact_shadows(view, light, occluders, room);
     case Visibility::exact:
-        return ShadowsBy::slices;
+        return ShadowMethod::slices;
     }
-    return ShadowsBy::none;
+    return ShadowMethod::none;
 }
 
 // Sets the step rule: steps resolve lights whose shadows are sampled by rays or, with `all`, every light.
 void add_steps(const MarchSettings& march, bool all, SingleScattering& fog) {
     std::vector<Light> lights;
     for (size_t i = 0; i < fog.shadows.size(); ++i)
-        if (all || fog.shadows[i].by == ShadowsBy::rays) lights.push_back(fog.snapshot.lights[i]);
+        if (all || fog.shadows[i].by == ShadowMethod::rays) lights.push_back(fog.snapshot.lights[i]);
     fog.sampled = has_grid(fog.snapshot) || !lights.empty();
     fog.rule = march_steps(march, std::move(lights));
 }
@@ -56,13 +56,13 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     append_environment_light(fog->snapshot, scattering, shadows, sampled);
     FieldLight fields = take_fields(fog->snapshot, settings.style, view.camera);
     fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
-    take_faces(fog->snapshot, scattering, shadows, sampled);
+    take_area_lights(fog->snapshot, scattering, shadows, sampled);
     fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
     fog->opaque = fields.opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
     if (exact) fog->fields = std::move(fields.fields), fields.fields.clear();
     const bool room = intervals && has_room_for_volumes(view, fog->snapshot);
     const auto by = [&](const Light& light) {
-        return shadows_by(view, march.visibility, light, *shadow_casters(light, snapshot), room);
+        return shadow_method(view, march.visibility, light, *shadow_casters(light, snapshot), room);
     };
     add_lights(view, settings.terms.light, settings.terms.light_resolution, by, *fog);
     add_steps(march, !intervals && !exact, *fog);

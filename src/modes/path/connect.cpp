@@ -11,7 +11,7 @@
 namespace tyndall {
 namespace {
 // Traces shadow rays against the surfaces that shadow each light: all surfaces, or the light's set of casters.
-void pass_surfaces(const Snapshot& snapshot, std::span<const Connection> connections, Occluders::ShadowRays& rays,
+void trace_shadows(const Snapshot& snapshot, std::span<const Connection> connections, Occluders::ShadowRays& rays,
                    float* shares) {
     const auto set_of = [&](size_t i) { return i < connections.size() ? connections[i].casters : -1; };
     int32_t wanted[16];
@@ -36,7 +36,7 @@ Connection connection_to_face(const Light& light, vec3 point, int index, vec2 u)
     c.fog_length = sample.distance, c.shadow_length = sample.distance * 0.9999f;
     c.steradians = sample.steradians;
     c.irradiance =
-        radiance_of(light) * sample.steradians * face_picture(*light.area, point + sample.distance * sample.direction);
+        radiance_of(light) * sample.steradians * face_texture(*light.area, point + sample.distance * sample.direction);
     c.shadows = light.shadows, c.casters = light.casters, c.light_index = index;
     return c;
 }
@@ -72,7 +72,7 @@ void find_visibility(const PathTracer& tracer, std::span<const Connection> conne
         rays.set(i, {off_surface(c.point, c.face_normal, c.shadow), c.shadow, c.shadow_length});
         any = true;
     }
-    if (any) pass_surfaces(tracer.snapshot, connections, rays, shares);
+    if (any) trace_shadows(tracer.snapshot, connections, rays, shares);
     std::copy_n(shares, connections.size(), visibility);
 }
 
@@ -89,7 +89,7 @@ Connection connection_to_light(const PathTracer& tracer, vec3 point, int index, 
     return c;
 }
 
-Connection connection_to_glow(vec3 point, const EmissivePoint& target) {
+Connection connection_to_emitter(vec3 point, const EmissivePoint& target) {
     const vec3 offset = target.position - point;
     const float distance = glm::length(offset);
     Connection c;
@@ -99,7 +99,7 @@ Connection connection_to_glow(vec3 point, const EmissivePoint& target) {
     return c;
 }
 
-Connection connection_to_fire(vec3 point, const EmissivePlace& target) {
+Connection connection_to_fire(vec3 point, const EmissionSample& target) {
     const vec3 offset = target.position - point;
     const float distance = std::max(glm::length(offset), 1e-20f);
     Connection c;

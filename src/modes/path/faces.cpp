@@ -27,26 +27,26 @@ float peak_for_faces(const PathTracer& tracer, const FogPoint& fog) {
     return std::ranges::any_of(tracer.snapshot.lights, finds) ? peak : 0;
 }
 
-float aimed_share(const Walk& walk, const FogPoint& fog, const Connection& connection, float peak, float cosine) {
+float mis_weight(const PathState& state, const FogPoint& fog, const Connection& connection, float peak, float cosine) {
     if (!(peak > 0)) return 1;
-    const Light& light = walk.snapshot.lights[static_cast<size_t>(connection.light_index)];
+    const Light& light = state.snapshot.lights[static_cast<size_t>(connection.light_index)];
     if (!finds_face(light, connection.point, peak)) return 1;
-    const float aimed = aimed_count(walk.order);
-    return aimed / (aimed + connection.steradians * fog.density(walk.snapshot, cosine));
+    const float aimed = aimed_count(state.order);
+    return aimed / (aimed + connection.steradians * fog.density(state.snapshot, cosine));
 }
 
-void meet_faces(const Walk& walk, Segment& line) {
-    const PathVertex& from = line.walker;
-    const float aimed = aimed_count(walk.order - 1);
-    for (size_t i = 0; i < walk.snapshot.lights.size() && line.through > 0; ++i) {
-        const Light& light = walk.snapshot.lights[i];
+void hit_faces(const PathState& state, Segment& line) {
+    const PathVertex& from = line.vertex;
+    const float aimed = aimed_count(state.order - 1);
+    for (size_t i = 0; i < state.snapshot.lights.size() && line.transmittance > 0; ++i) {
+        const Light& light = state.snapshot.lights[i];
         if (!finds_face(light, from.ray.origin, from.peak)) continue;
         const float away = area_hit(*light.area, {from.ray.origin, from.ray.direction, infinity});
         if (away == infinity || !(away > line.travelled && away <= line.travelled + line.end)) continue;
         const float own = from.density * area_steradians(*light.area, from.ray.origin, from.ray.direction, away);
-        const vec3 radiance = radiance_of(light) * face_picture(*light.area, from.ray.at(away)) * light.volume_scale;
-        const float share = line.through * passing_share(walk, line, {0, away - line.travelled});
-        add_light(walk, line, radiance * (share * own / (aimed + own)), i, from.in_fog);
+        const vec3 radiance = radiance_of(light) * face_texture(*light.area, from.ray.at(away)) * light.volume_scale;
+        const float share = line.transmittance * line_transmittance(state, line, {0, away - line.travelled});
+        add_light(state, line, radiance * (share * own / (aimed + own)), i, from.in_fog);
     }
 }
 }

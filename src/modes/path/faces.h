@@ -8,8 +8,8 @@ namespace tyndall {
 float peak_for_faces(const PathTracer& tracer, const FogPoint& fog);
 
 // MIS weight of light sampling at a point with such a peak; `cosine`: between the connection and the line.
-float aimed_share(const Walk& walk, const FogPoint& fog, const Connection& connection, float peak, float cosine);
+float mis_weight(const PathState& state, const FogPoint& fog, const Connection& connection, float peak, float cosine);
 
 // Adds the light of faces that the current segment of a line hits, with its MIS weight.
-void meet_faces(const Walk& walk, Segment& line);
+void hit_faces(const PathState& state, Segment& line);
 }

@@ -11,7 +11,7 @@ namespace {
 // optical depths.
 constexpr float collision_share = 1.0f / 8;
 
-void look_at_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
+void evaluate_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
     fog.position = position, fog.total = 0;
     fog.extinction.resize(snapshot.media.size()), fog.albedo.resize(snapshot.media.size());
     for (size_t m = 0; m < snapshot.media.size(); ++m, ++lookups) {
@@ -41,7 +41,7 @@ float guessed_transmittance(const Snapshot& snapshot, const Segment& line, float
 }
 
 // Number of candidate distances on a line. Lines from the eye are worth more shadow rays, as beams are narrow.
-int candidate_count(const Walk& walk) { return walk.order == 0 ? 16 : 1; }
+int candidate_count(const PathState& state) { return state.order == 0 ? 16 : 1; }
 
 // A candidate distance along the segment, at which a light is sampled.
 struct Candidate {
@@ -50,10 +50,10 @@ struct Candidate {
 };
 
 // Distributes the candidates over lights and distances, and traces all their shadow rays together.
-void find_candidates(const Walk& walk, const Segment& line, std::span<Candidate> candidates,
+void find_candidates(const PathState& state, const Segment& line, std::span<Candidate> candidates,
                      std::span<Connection> connections) {
-    const Snapshot& snapshot = walk.snapshot;
-    const std::vector<LineLight>& lights = walk.scratch.lights;
+    const Snapshot& snapshot = state.snapshot;
+    const std::vector<LineLight>& lights = state.scratch.lights;
     const vec2 u = line.numbers(use_distance), soft = line.numbers(use_soft);
     const float count = static_cast<float>(candidates.size());
     size_t light = 0;
@@ -69,31 +69,32 @@ void find_candidates(const Walk& walk, const Segment& line, std::span<Candidate>
         candidates[i].distance = lights[light].distance(turned(u.y));
         const vec3 point = line.rest.at(candidates[i].distance);
         const LightSample arriving = arrival(snapshot.lights[light], point);
-        connections[i] = connection_to_light(walk.tracer, point, static_cast<int>(light), arriving.to_light,
+        connections[i] = connection_to_light(state.tracer, point, static_cast<int>(light), arriving.to_light,
                                              {turned(soft.x), soft.y});
         const vec3 irradiance = snapshot.lights[light].area ? connections[i].irradiance : arriving.irradiance;
         connections[i].light = irradiance * snapshot.lights[light].volume_scale;
     }
     float visibility[16];
-    find_visibility(walk.tracer, connections, visibility);
+    find_visibility(state.tracer, connections, visibility);
     for (size_t i = 0; i < candidates.size(); ++i)
         connections[i].light *= visibility[i], connections[i].shadows = false;
 }
 
-void weigh(const Walk& walk, const Segment& line, const Connection& connection, Candidate& candidate, int& lookups) {
+void weigh(const PathState& state, const Segment& line, const Connection& connection, Candidate& candidate,
+           int& lookups) {
     if (!(max_component(connection.light) > 0)) return;
-    const Snapshot& snapshot = walk.snapshot;
-    FogPoint& fog = walk.scratch.fog;
-    look_at_fog(snapshot, connection.point, fog, lookups);
+    const Snapshot& snapshot = state.snapshot;
+    FogPoint& fog = state.scratch.fog;
+    evaluate_fog(snapshot, connection.point, fog, lookups);
     if (!(fog.total > 0)) return;
-    const LineLight& along = walk.scratch.lights[connection.light_index];
+    const LineLight& along = state.scratch.lights[connection.light_index];
     const float guess = guessed_transmittance(snapshot, line, candidate.distance);
-    const float chance = static_cast<float>(candidate_count(walk)) * along.chance * along.density(candidate.distance),
+    const float chance = static_cast<float>(candidate_count(state)) * along.chance * along.density(candidate.distance),
                 other = fog.total * guess * pick_chance(snapshot, fog.position, connection.light_index);
     if (!(chance > 0)) return;
     const float cosine = glm::dot(connection.to_light, line.rest.direction);
     const float share =
-        fog.total / (chance + other) * aimed_share(walk, fog, connection, peak_for_faces(walk.tracer, fog), cosine);
+        fog.total / (chance + other) * mis_weight(state, fog, connection, peak_for_faces(state.tracer, fog), cosine);
     candidate.scattered = fog.scattered(snapshot, cosine) * share * connection.light;
     candidate.brightness = luminance(candidate.scattered) * guess;
 }
@@ -110,64 +111,64 @@ Interval<float> thin_range(const Segment& line, const Medium& medium) {
 struct FireShares {
     float picked = 0, collided = 0;
 };
-FireShares fire_shares(const Segment& line, const EmissivePlace& place, float distance, float colliding) {
+FireShares fire_shares(const Segment& line, const EmissionSample& place, float distance, float colliding) {
     const float found = place.line_density + colliding, away = line.travelled + distance;
-    const bool aims = line.walker.density > 0; // no connections from the eye
-    const float chance = aims ? found + place.density * away * away / line.walker.density : found;
+    const bool aims = line.vertex.density > 0; // no connections from the eye
+    const float chance = aims ? found + place.density * away * away / line.vertex.density : found;
     if (!(chance > 0)) return {};
     return {place.line_density / chance, colliding / chance};
 }
 
-void gather_field(const Walk& walk, Segment& line, size_t number) {
+void gather_field(const PathState& state, Segment& line, size_t number) {
     Ray stretch = line.rest;
     stretch.t_max = line.end;
-    const EmissionOnLine hit = emission_on_line(*walk.tracer.fire, number, stretch, line.numbers(use_emission).x);
+    const EmissionOnLine hit = emission_on_line(*state.tracer.fire, number, stretch, line.numbers(use_emission).x);
     if (!(hit.inverse_density > 0)) return;
-    int& lookups = walk.results[line.walker.lane].steps;
+    int& lookups = state.results[line.vertex.lane].steps;
     ++lookups;
     if (!(max_component(hit.place.emission) > 0)) return;
-    const float colliding = colliding_chance(walk.snapshot, hit.place.position, lookups);
-    const float share = line.through * passing_share(walk, line, {0, hit.distance}) *
+    const float colliding = collision_pdf(state.snapshot, hit.place.position, lookups);
+    const float share = line.transmittance * line_transmittance(state, line, {0, hit.distance}) *
                         fire_shares(line, hit.place, hit.distance, colliding).picked;
-    add_light(walk, line, hit.place.emission * (share * hit.inverse_density), OtherLight::emission,
-              walk.order == 0 || line.walker.in_fog);
+    add_light(state, line, hit.place.emission * (share * hit.inverse_density), OtherLight::emission,
+              state.order == 0 || line.vertex.in_fog);
 }
 
 // Adds emission of thin fog at one sampled distance per medium; thicker fog emits at collisions.
-void gather_emission(const Walk& walk, Segment& line) {
-    const size_t fields = walk.tracer.fire ? walk.tracer.fire->fields.size() : 0;
-    for (size_t m = 0; m < fields && line.through > 0; ++m) gather_field(walk, line, m);
-    for (const Medium& medium : walk.snapshot.media) {
+void gather_emission(const PathState& state, Segment& line) {
+    const size_t fields = state.tracer.fire ? state.tracer.fire->fields.size() : 0;
+    for (size_t m = 0; m < fields && line.transmittance > 0; ++m) gather_field(state, line, m);
+    for (const Medium& medium : state.snapshot.media) {
         const vec3 emission = medium.optics.emission.radiance;
         const Interval<float> range = thin_range(line, medium);
-        if (range.empty() || !(max_component(emission) > 0) || !(line.through > 0)) continue;
+        if (range.empty() || !(max_component(emission) > 0) || !(line.transmittance > 0)) continue;
         const float distance = range.low + line.numbers(use_emission).x * range.length();
         const float density = density_at(medium, line.rest.at(distance));
         if (!(density > 0)) continue;
-        const float share = line.through * passing_share(walk, line, {0, distance});
-        add_light(walk, line, emission * (share * density * range.length()), OtherLight::emission,
-                  walk.order == 0 || line.walker.in_fog);
+        const float share = line.transmittance * line_transmittance(state, line, {0, distance});
+        add_light(state, line, emission * (share * density * range.length()), OtherLight::emission,
+                  state.order == 0 || line.vertex.in_fog);
     }
 }
 
 // Adds light scattered at a distance sampled for the lights: one of several candidates, picked in proportion to its
 // estimated contribution (resampled importance sampling: Talbot et al. 2005). Returns the transmittance of the segment.
-float gather_on_the_way(const Walk& walk, Segment& line) {
-    int& lookups = walk.results[line.walker.lane].steps;
-    const auto passing = [&](Interval<float> range) { return passing_share(walk, line, range); };
+float gather_on_the_way(const PathState& state, Segment& line) {
+    int& lookups = state.results[line.vertex.lane].steps;
+    const auto passing = [&](Interval<float> range) { return line_transmittance(state, line, range); };
     Ray stretch = line.rest;
     stretch.t_max = line.end;
-    walk.scratch.lights.clear();
-    if (walk.turns) lights_on_line(walk.snapshot, stretch, walk.scratch.lights);
-    if (walk.scratch.lights.empty() || !(line.through > 0)) return passing({0, line.end});
+    state.scratch.lights.clear();
+    if (state.scatters) lights_on_line(state.snapshot, stretch, state.scratch.lights);
+    if (state.scratch.lights.empty() || !(line.transmittance > 0)) return passing({0, line.end});
 
     Candidate candidates[16];
     Connection connections[16];
-    const size_t count = static_cast<size_t>(candidate_count(walk));
-    find_candidates(walk, line, {candidates, count}, {connections, count});
+    const size_t count = static_cast<size_t>(candidate_count(state));
+    find_candidates(state, line, {candidates, count}, {connections, count});
     float total = 0;
     for (size_t i = 0; i < count; ++i) {
-        weigh(walk, line, connections[i], candidates[i], lookups);
+        weigh(state, line, connections[i], candidates[i], lookups);
         total += candidates[i].brightness;
     }
     if (!(total > 0)) return passing({0, line.end});
@@ -179,131 +180,133 @@ float gather_on_the_way(const Walk& walk, Segment& line) {
     const Candidate& candidate = candidates[picked];
     const float before = passing({0, candidate.distance});
     if (!(before > 0)) return 0;
-    queue(walk, line, connections[picked], candidate.scattered * (line.through * before * total / candidate.brightness),
-          walk.order == 0 || line.walker.in_fog);
+    queue(state, line, connections[picked],
+          candidate.scattered * (line.transmittance * before * total / candidate.brightness),
+          state.order == 0 || line.vertex.in_fog);
     return before * passing({candidate.distance, line.end});
 }
 
 // Adds environment light that a medium scatters at a point of the line; `weight`: length that the point represents,
 // times transmittance.
-void gather_sky_by(const Walk& walk, Segment& line, const FogPoint& fog, size_t medium, float weight) {
-    const Snapshot& snapshot = walk.snapshot;
+void gather_sky_by(const PathState& state, Segment& line, const FogPoint& fog, size_t medium, float weight) {
+    const Snapshot& snapshot = state.snapshot;
     const Optics& optics = snapshot.media[medium].optics;
     const vec3 scattered = fog.albedo_of(optics, medium) * (fog.extinction[medium] * weight);
     const auto cosine = [&](vec3 direction) { return glm::dot(direction, line.rest.direction); };
     gather_sky(
-        walk, line, fog.position, vec3(0), snapshot.environment->volume_scale, walk.order == 0 || line.walker.in_fog,
+        state, line, fog.position, vec3(0), snapshot.environment->volume_scale, state.order == 0 || line.vertex.in_fog,
         [&](vec3 direction) { return scattered * phase_value(optics.phase, cosine(direction)); },
         [&](vec3 direction) { return fog.density(snapshot, cosine(direction)); });
 }
 
 // Adds environment light scattered by thin fog at one sampled distance per medium; thicker fog scatters it at
 // collisions.
-void gather_sky_on_the_way(const Walk& walk, Segment& line) {
-    if (!walk.turns) return;
-    FogPoint& fog = walk.scratch.fog;
-    for (size_t m = 0; m < walk.snapshot.media.size() && line.through > 0; ++m) {
-        const Interval<float> range = thin_range(line, walk.snapshot.media[m]);
+void gather_sky_on_the_way(const PathState& state, Segment& line) {
+    if (!state.scatters) return;
+    FogPoint& fog = state.scratch.fog;
+    for (size_t m = 0; m < state.snapshot.media.size() && line.transmittance > 0; ++m) {
+        const Interval<float> range = thin_range(line, state.snapshot.media[m]);
         if (range.empty()) continue;
         const float distance = range.low + line.numbers(use_sky_distance).x * range.length();
-        look_at_fog(walk.snapshot, line.rest.at(distance), fog, walk.results[line.walker.lane].steps);
+        evaluate_fog(state.snapshot, line.rest.at(distance), fog, state.results[line.vertex.lane].steps);
         if (!(fog.extinction[m] > 0)) continue;
-        gather_sky_by(walk, line, fog, m, range.length() * line.through * passing_share(walk, line, {0, distance}));
+        gather_sky_by(state, line, fog, m,
+                      range.length() * line.transmittance * line_transmittance(state, line, {0, distance}));
     }
 }
 
-void gather_sky_at_collision(const Walk& walk, Segment& line, const FogPoint& fog) {
-    for (size_t m = 0; m < walk.snapshot.media.size(); ++m)
-        if (fog.extinction[m] > 0 && thin_range(line, walk.snapshot.media[m]).empty())
-            gather_sky_by(walk, line, fog, m, 1 / fog.total);
+void gather_sky_at_collision(const PathState& state, Segment& line, const FogPoint& fog) {
+    for (size_t m = 0; m < state.snapshot.media.size(); ++m)
+        if (fog.extinction[m] > 0 && thin_range(line, state.snapshot.media[m]).empty())
+            gather_sky_by(state, line, fog, m, 1 / fog.total);
 }
 
 // Adds direct light at a collision: of lights, fire, the environment and emissive surfaces.
-void gather_at_collision(const Walk& walk, Segment& line, float distance, const FogPoint& fog, float peak) {
-    const Snapshot& snapshot = walk.snapshot;
-    const bool in_fog = walk.order == 0 || line.walker.in_fog;
-    int& lookups = walk.results[line.walker.lane].steps;
+void gather_at_collision(const PathState& state, Segment& line, float distance, const FogPoint& fog, float peak) {
+    const Snapshot& snapshot = state.snapshot;
+    const bool in_fog = state.order == 0 || line.vertex.in_fog;
+    int& lookups = state.results[line.vertex.lane].steps;
     const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
     if (pick.chance > 0) {
-        const LineLight& along = walk.scratch.lights[pick.light];
+        const LineLight& along = state.scratch.lights[pick.light];
         const float mine = fog.total * guessed_transmittance(snapshot, line, distance) * pick.chance,
-                    other = static_cast<float>(candidate_count(walk)) * along.chance * along.density(distance);
+                    other = static_cast<float>(candidate_count(state)) * along.chance * along.density(distance);
         const Connection connection =
-            connection_to_light(walk.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft));
+            connection_to_light(state.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft));
         const Light& light = snapshot.lights[static_cast<size_t>(pick.light)];
         const vec3 irradiance = light.area ? connection.irradiance * light.volume_scale : pick.irradiance;
         const float cosine = glm::dot(connection.to_light, line.rest.direction);
         const float weight = mine > 0 ? mine / (mine + other) : (other > 0 ? 0.0f : 1.0f);
-        const float share = weight * aimed_share(walk, fog, connection, peak, cosine);
-        queue(walk, line, connection, fog.scattered(snapshot, cosine) * irradiance * (share / pick.chance), in_fog);
+        const float share = weight * mis_weight(state, fog, connection, peak, cosine);
+        queue(state, line, connection, fog.scattered(snapshot, cosine) * irradiance * (share / pick.chance), in_fog);
     }
-    if (walk.tracer.fire) {
-        const EmissivePlace target = pick_fire(walk, line);
+    if (state.tracer.fire) {
+        const EmissionSample target = pick_fire(state, line);
         const Connection connection = connection_to_fire(fog.position, target);
         const float cosine = glm::dot(connection.to_light, line.rest.direction), away = connection.fog_length;
-        const float found = target.line_density + colliding_chance(snapshot, target.position, lookups);
+        const float found = target.line_density + collision_pdf(snapshot, target.position, lookups);
         const float chance = target.density * away * away + fog.density(snapshot, cosine) * found;
         if (chance > 0)
-            queue(walk, line, connection, fog.scattered(snapshot, cosine) * target.emission / chance, in_fog);
+            queue(state, line, connection, fog.scattered(snapshot, cosine) * target.emission / chance, in_fog);
     }
-    if (snapshot.environment) gather_sky_at_collision(walk, line, fog);
-    if (!walk.tracer.glow) return;
-    const EmissivePoint target =
-        pick_glow_point(*walk.tracer.glow, *snapshot.occluders, line.numbers(use_light).y, line.numbers(use_glow));
-    const Connection connection = connection_to_glow(fog.position, target);
+    if (snapshot.environment) gather_sky_at_collision(state, line, fog);
+    if (!state.tracer.emitters) return;
+    const EmissivePoint target = sample_triangles(*state.tracer.emitters, *snapshot.occluders,
+                                                  line.numbers(use_light).y, line.numbers(use_glow));
+    const Connection connection = connection_to_emitter(fog.position, target);
     const float facing = std::abs(glm::dot(target.normal, connection.to_light));
     const float chance = target.density * connection.fog_length * connection.fog_length / facing;
     const float cosine = glm::dot(connection.to_light, line.rest.direction);
     if (facing > 0 && chance > 0)
-        queue(walk, line, connection,
+        queue(state, line, connection,
               fog.scattered(snapshot, cosine) * target.emission / (chance + fog.density(snapshot, cosine)), in_fog);
 }
 
-void gather_fire_at_collision(const Walk& walk, Segment& line, float distance, const FogPoint& fog) {
-    for (size_t field = 0; field < walk.tracer.fire->fields.size(); ++field) {
-        const EmissivePlace place = emissive_place_at(*walk.tracer.fire, field, fog.position);
+void gather_fire_at_collision(const PathState& state, Segment& line, float distance, const FogPoint& fog) {
+    for (size_t field = 0; field < state.tracer.fire->fields.size(); ++field) {
+        const EmissionSample place = emission_sample_at(*state.tracer.fire, field, fog.position);
         if (!(max_component(place.emission) > 0)) continue;
         const float share = fire_shares(line, place, distance, collision_share * fog.total).collided;
-        add_light(walk, line, place.emission * (share / fog.total), OtherLight::emission,
-                  walk.order == 0 || line.walker.in_fog);
+        add_light(state, line, place.emission * (share / fog.total), OtherLight::emission,
+                  state.order == 0 || line.vertex.in_fog);
     }
 }
 
 // If the path collides with fog on this segment, gathers light there and scatters the path.
-void collide(const Walk& walk, Segment& line) {
-    const Snapshot& snapshot = walk.snapshot;
+void collide(const PathState& state, Segment& line) {
+    const Snapshot& snapshot = state.snapshot;
     float nearest = line.end;
     int hit = -1;
     for (size_t m = 0; m < snapshot.media.size(); ++m) {
         const float first = m == 0 ? line.numbers(use_free_path).x : line.random.next();
         const float t = collision_distance(snapshot.media[m], line.rest, {0, nearest}, first, line.random,
-                                           walk.results[line.walker.lane].steps);
+                                           state.results[line.vertex.lane].steps);
         if (t < nearest) nearest = t, hit = static_cast<int>(m);
     }
     if (hit < 0) return;
-    line.walking = false;
+    line.unscattered = false;
 
     const Optics& optics = snapshot.media[hit].optics;
-    const bool in_fog = walk.order == 0 || line.walker.in_fog;
+    const bool in_fog = state.order == 0 || line.vertex.in_fog;
     if (thin_range(line, snapshot.media[hit]).empty())
-        add_light(walk, line, optics.emission.radiance / grey_extinction(optics), OtherLight::emission, in_fog);
-    if (!walk.turns && !walk.tracer.fire) return;
-    FogPoint& fog = walk.scratch.fog;
-    look_at_fog(snapshot, line.rest.at(nearest), fog, walk.results[line.walker.lane].steps);
+        add_light(state, line, optics.emission.radiance / grey_extinction(optics), OtherLight::emission, in_fog);
+    if (!state.scatters && !state.tracer.fire) return;
+    FogPoint& fog = state.scratch.fog;
+    evaluate_fog(snapshot, line.rest.at(nearest), fog, state.results[line.vertex.lane].steps);
     if (!(fog.total > 0)) return;
-    if (walk.tracer.fire) gather_fire_at_collision(walk, line, nearest, fog);
-    if (!walk.turns) return;
-    const float peak = peak_for_faces(walk.tracer, fog);
-    gather_at_collision(walk, line, nearest, fog, peak);
+    if (state.tracer.fire) gather_fire_at_collision(state, line, nearest, fog);
+    if (!state.scatters) return;
+    const float peak = peak_for_faces(state.tracer, fog);
+    gather_at_collision(state, line, nearest, fog, peak);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
     const float density = fog.density(snapshot, glm::dot(direction, line.rest.direction));
-    const float sky_scale = walk.tracer.finds_sky ? snapshot.environment->volume_scale : 0;
+    const float sky_scale = state.tracer.finds_sky ? snapshot.environment->volume_scale : 0;
     const vec3 albedo = fog.albedo_of(optics, static_cast<size_t>(hit));
-    scatter(walk, line, {{fog.position, direction}, albedo, density, sky_scale, peak}, in_fog);
+    scatter(state, line, {{fog.position, direction}, albedo, density, sky_scale, peak}, in_fog);
 }
 }
 
-float colliding_chance(const Snapshot& snapshot, vec3 position, int& lookups) {
+float collision_pdf(const Snapshot& snapshot, vec3 position, int& lookups) {
     float extinction = 0;
     for (const Medium& medium : snapshot.media) {
         if (only_emits(medium.optics)) continue;
@@ -313,20 +316,20 @@ float colliding_chance(const Snapshot& snapshot, vec3 position, int& lookups) {
     return collision_share * extinction;
 }
 
-float passing_share(const Walk& walk, Segment& line, Interval<float> range) {
+float line_transmittance(const PathState& state, Segment& line, Interval<float> range) {
     float share = 1;
-    for (const Medium& medium : walk.snapshot.media)
+    for (const Medium& medium : state.snapshot.media)
         if (share > 0)
-            share *= ratio_transmittance(medium, line.rest, range, line.random, walk.results[line.walker.lane].steps);
+            share *= ratio_transmittance(medium, line.rest, range, line.random, state.results[line.vertex.lane].steps);
     return share;
 }
 
-void follow_fog(const Walk& walk, Segment& line) {
-    gather_emission(walk, line);
-    if (walk.snapshot.environment) gather_sky_on_the_way(walk, line);
-    const float passing = gather_on_the_way(walk, line);
-    if (line.walking) collide(walk, line);
-    line.through *= passing;
-    if (walk.order == 0) walk.results[line.walker.lane].transmittance *= passing;
+void follow_fog(const PathState& state, Segment& line) {
+    gather_emission(state, line);
+    if (state.snapshot.environment) gather_sky_on_the_way(state, line);
+    const float passing = gather_on_the_way(state, line);
+    if (line.unscattered) collide(state, line);
+    line.transmittance *= passing;
+    if (state.order == 0) state.results[line.vertex.lane].transmittance *= passing;
 }
 }

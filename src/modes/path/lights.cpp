@@ -29,7 +29,7 @@ float filter_mean(const Light& light, const Ray& line, const LineLight& along) {
 float volume_brightness(const Light& light) { return luminance(light.intensity) * light.volume_scale; }
 
 // From the first fog to the last; unbounded fog counts up to 8 optical depths or the end of the scene.
-Interval<float> fog_stretch(const Snapshot& snapshot, const Ray& line) {
+Interval<float> fog_interval(const Snapshot& snapshot, const Ray& line) {
     Interval<float> stretch{infinity, 0};
     for (const Medium& medium : snapshot.media) {
         Interval<float> inside = clip(medium.world_bounds, line.origin, line.direction, {0, line.t_max});
@@ -46,7 +46,7 @@ Interval<float> fog_stretch(const Snapshot& snapshot, const Ray& line) {
 // Estimated irradiance at a point, for picking lights.
 LightSample expected(const Light& light, vec3 point) {
     LightSample arriving = arrival(light, point);
-    if (light.area) arriving.irradiance = rough_arrival(light, point);
+    if (light.area) arriving.irradiance = rough_irradiance(light, point);
     return arriving;
 }
 
@@ -106,7 +106,7 @@ float LineLight::density(float t) const {
 
 void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights) {
     lights.clear();
-    const Interval<float> stretch = fog_stretch(snapshot, line);
+    const Interval<float> stretch = fog_interval(snapshot, line);
     double total = 0;
     for (const Light& light : snapshot.lights) {
         lights.push_back(stretch.empty() ? LineLight{} : light_on_line(light, line, stretch));

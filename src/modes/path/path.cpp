@@ -34,7 +34,7 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     tracer->snapshot = with_terms(snapshot, settings.terms);
     tracer->settings = settings.path, tracer->surfaces_emit = settings.terms.emission;
     tracer->camera = view.camera, tracer->size = view.size;
-    if (tracer->surfaces_emit) tracer->glow = emissive_triangles(tracer->snapshot);
+    if (tracer->surfaces_emit) tracer->emitters = emissive_triangles(tracer->snapshot);
     tracer->fire = emissive_bricks(tracer->snapshot);
     take_fields(tracer->snapshot, settings.style, view.camera);
     tracer->finds_sky = finds_sky(tracer->snapshot);

@@ -31,228 +31,229 @@ vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
 // Solid-angle pdf with which light sampling at the start of the line picks this point of an emissive surface.
 float target_density(const PathTracer& tracer, const Segment& line, const SurfacePoint& surface, int instance,
                      int triangle) {
-    const float density = tracer.glow ? glow_density(*tracer.glow, instance, triangle) : 0;
+    const float density = tracer.emitters ? triangle_density(*tracer.emitters, instance, triangle) : 0;
     const float distance = line.travelled + line.end,
                 facing = std::abs(glm::dot(surface.face_normal, line.rest.direction));
     return density > 0 ? density * distance * distance / std::max(facing, 1e-12f) : 0;
 }
 
-void gather_at_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, float share) {
+void gather_at_surface(const PathState& state, Segment& line, const SurfacePoint& surface, float share) {
     const vec3 reflected = surface.base_color * (share / pi);
-    const LightPick pick = pick_light(walk.snapshot, surface, line.numbers(use_surface_light).x);
+    const LightPick pick = pick_light(state.snapshot, surface, line.numbers(use_surface_light).x);
     if (pick.chance > 0) {
-        Connection connection = connection_to_light(walk.tracer, surface.position, pick.light, pick.to_light,
+        Connection connection = connection_to_light(state.tracer, surface.position, pick.light, pick.to_light,
                                                     line.numbers(use_surface_soft));
         connection.face_normal = surface.face_normal;
         vec3 irradiance = pick.irradiance;
-        if (const Light& light = walk.snapshot.lights[static_cast<size_t>(pick.light)]; light.area) {
+        if (const Light& light = state.snapshot.lights[static_cast<size_t>(pick.light)]; light.area) {
             const float cosine = std::max(glm::dot(surface.normal, connection.to_light), 0.0f);
             irradiance = connection.irradiance * (light.surface_scale * cosine);
         }
-        queue(walk, line, connection, reflected * irradiance / pick.chance, line.walker.in_fog);
+        queue(state, line, connection, reflected * irradiance / pick.chance, line.vertex.in_fog);
     }
-    if (walk.tracer.fire) {
-        const EmissivePlace target = pick_fire(walk, line);
+    if (state.tracer.fire) {
+        const EmissionSample target = pick_fire(state, line);
         Connection connection = connection_to_fire(surface.position, target);
         connection.face_normal = surface.face_normal;
         const float cosine = glm::dot(surface.normal, connection.to_light), away = connection.fog_length;
-        const float found = target.line_density +
-                            colliding_chance(walk.snapshot, target.position, walk.results[line.walker.lane].steps);
+        const float found =
+            target.line_density + collision_pdf(state.snapshot, target.position, state.results[line.vertex.lane].steps);
         const float chance = target.density * away * away + std::max(cosine, 0.0f) / pi * found;
         if (cosine > 0 && chance > 0)
-            queue(walk, line, connection, reflected * target.emission * (cosine / chance), line.walker.in_fog);
+            queue(state, line, connection, reflected * target.emission * (cosine / chance), line.vertex.in_fog);
     }
-    if (walk.snapshot.environment && is_lit(*walk.snapshot.environment, walk.snapshot, surface.instance))
+    if (state.snapshot.environment && is_lit(*state.snapshot.environment, state.snapshot, surface.instance))
         gather_sky(
-            walk, line, surface.position, surface.face_normal, walk.snapshot.environment->surface_scale,
-            line.walker.in_fog,
+            state, line, surface.position, surface.face_normal, state.snapshot.environment->surface_scale,
+            line.vertex.in_fog,
             [&](vec3 direction) { return reflected * std::max(glm::dot(surface.normal, direction), 0.0f); },
             [&](vec3 direction) { return std::max(glm::dot(surface.normal, direction), 0.0f) / pi; });
-    if (!walk.tracer.glow) return;
-    const EmissivePoint target = pick_glow_point(*walk.tracer.glow, *walk.snapshot.occluders,
-                                                 line.numbers(use_surface_light).y, line.numbers(use_surface_glow));
-    Connection connection = connection_to_glow(surface.position, target);
+    if (!state.tracer.emitters) return;
+    const EmissivePoint target = sample_triangles(*state.tracer.emitters, *state.snapshot.occluders,
+                                                  line.numbers(use_surface_light).y, line.numbers(use_surface_glow));
+    Connection connection = connection_to_emitter(surface.position, target);
     connection.face_normal = surface.face_normal;
     const float cosine = glm::dot(surface.normal, connection.to_light),
                 facing = std::abs(glm::dot(target.normal, connection.to_light));
     const float chance = target.density * connection.fog_length * connection.fog_length / facing;
     if (cosine > 0 && facing > 0 && chance > 0)
-        queue(walk, line, connection, reflected * target.emission * (cosine / (chance + cosine / pi)),
-              line.walker.in_fog);
+        queue(state, line, connection, reflected * target.emission * (cosine / (chance + cosine / pi)),
+              line.vertex.in_fog);
 }
 
 // Lambertian reflection: directions are sampled by their cosine, so that the weight is the base color.
-void bounce(const Walk& walk, const Segment& line, const SurfacePoint& surface) {
+void bounce(const PathState& state, const Segment& line, const SurfacePoint& surface) {
     const vec2 u = line.numbers(use_bounce);
     const float cosine = std::sqrt(std::max(0.0f, 1 - u.x));
     const vec3 direction = cosine_direction(surface.normal, u);
     const vec3 origin = off_surface(surface.position, surface.face_normal, direction);
-    const bool finds_sky = walk.tracer.finds_sky && is_lit(*walk.snapshot.environment, walk.snapshot, surface.instance);
-    const float sky_scale = finds_sky ? walk.snapshot.environment->surface_scale : 0;
-    scatter(walk, line, {{origin, direction}, surface.base_color, cosine / pi, sky_scale}, line.walker.in_fog);
+    const bool finds_sky =
+        state.tracer.finds_sky && is_lit(*state.snapshot.environment, state.snapshot, surface.instance);
+    const float sky_scale = finds_sky ? state.snapshot.environment->surface_scale : 0;
+    scatter(state, line, {{origin, direction}, surface.base_color, cosine / pi, sky_scale}, line.vertex.in_fog);
 }
 
 // Ambient light, and the environment's with its MIS weight against light sampling (balance heuristic).
-vec3 surroundings(const Walk& walk, const Segment& line) {
-    const PathVertex& from = line.walker;
-    if (!(from.sky_scale > 0)) return walk.snapshot.ambient;
-    const Environment& environment = *walk.snapshot.environment;
+vec3 surroundings(const PathState& state, const Segment& line) {
+    const PathVertex& from = line.vertex;
+    if (!(from.sky_scale > 0)) return state.snapshot.ambient;
+    const Environment& environment = *state.snapshot.environment;
     const float aimed = environment_density(environment, from.ray.direction);
     const float weight = from.sky_scale * from.density / (from.density + aimed);
-    return walk.snapshot.ambient + environment_radiance(environment, from.ray.direction) * weight;
+    return state.snapshot.ambient + environment_radiance(environment, from.ray.direction) * weight;
 }
 
 // The line leaves the scene: adds the background for the eye, the surroundings for other lines.
-void leave(const Walk& walk, Segment& line) {
-    if (walk.order == 0)
-        walk.results[line.walker.lane].background +=
-            line.walker.throughput * line.through *
-            background_radiance(walk.snapshot.background, line.walker.ray.direction,
-                                screen_position(walk.tracer, line.walker.ray));
+void leave(const PathState& state, Segment& line) {
+    if (state.order == 0)
+        state.results[line.vertex.lane].background +=
+            line.vertex.throughput * line.transmittance *
+            background_radiance(state.snapshot.background, line.vertex.ray.direction,
+                                screen_position(state.tracer, line.vertex.ray));
     else
-        add_light(walk, line, surroundings(walk, line) * line.through, OtherLight::ambient, line.walker.in_fog);
-    line.walking = false, line.through = 0;
+        add_light(state, line, surroundings(state, line) * line.transmittance, OtherLight::ambient, line.vertex.in_fog);
+    line.unscattered = false, line.transmittance = 0;
 }
 
-void start_lines(const Walk& walk) {
-    walk.scratch.lines.clear();
-    for (const PathVertex& walker : walk.scratch.walkers) {
+void start_lines(const PathState& state) {
+    state.scratch.lines.clear();
+    for (const PathVertex& vertex : state.scratch.vertices) {
         Segment line;
-        line.walker = walker, line.rest = walker.ray, line.skip = walker.skip;
-        line.order = walk.order;
-        line.random = {hash(walker.id, static_cast<uint32_t>(walk.order))};
-        walk.scratch.lines.push_back(line);
+        line.vertex = vertex, line.rest = vertex.ray, line.skip = vertex.skip;
+        line.order = state.order;
+        line.random = {hash(vertex.id, static_cast<uint32_t>(state.order))};
+        state.scratch.lines.push_back(line);
     }
-    walk.scratch.walkers.clear();
+    state.scratch.vertices.clear();
 }
 
 // Finds the next segment of every line, up to a surface or out of the scene.
-void find_ends(const Walk& walk, Ray* tested, Hits& hits) {
-    const std::vector<Segment>& lines = walk.scratch.lines;
+void find_ends(const PathState& state, Ray* tested, Hits& hits) {
+    const std::vector<Segment>& lines = state.scratch.lines;
     for (size_t i = 0; i < lines.size(); ++i) {
         const Segment& line = lines[i];
         const float left = std::max(line.rest.t_max - line.skip, 0.0f);
         tested[i] = {line.rest.at(line.skip), line.rest.direction, left};
     }
     hits.instance.fill(-1);
-    const Occluders* occluders = walk.snapshot.occluders.get();
-    if (occluders && !occluders->empty()) occluders->closest({tested, lines.size()}, 0, hits, walk.order == 0);
+    const Occluders* occluders = state.snapshot.occluders.get();
+    if (occluders && !occluders->empty()) occluders->closest({tested, lines.size()}, 0, hits, state.order == 0);
     for (size_t i = 0; i < lines.size(); ++i) {
-        Segment& line = walk.scratch.lines[i];
+        Segment& line = state.scratch.lines[i];
         line.end = hits.instance[i] >= 0 ? line.skip + hits.t[i] : line.rest.t_max;
     }
 }
 
 // Finds the area lights that the eye sees in front of any surface, and ends lines there. -1 = none.
-void find_faces(const Walk& walk, const Ray* tested, Hits& hits, std::span<int> faces) {
+void find_faces(const PathState& state, const Ray* tested, Hits& hits, std::span<int> faces) {
     for (size_t i = 0; i < faces.size(); ++i) {
-        Segment& line = walk.scratch.lines[i];
-        const FaceHit face = visible_face(walk.snapshot, tested[i]);
+        Segment& line = state.scratch.lines[i];
+        const FaceHit face = visible_face(state.snapshot, tested[i]);
         faces[i] = face.light >= 0 && line.skip + face.distance < line.end ? face.light : -1;
         if (faces[i] >= 0) line.end = line.skip + face.distance, hits.instance[i] = -1;
     }
 }
 
 // Adds the face of a light that the eye sees, and ends the line.
-void meet_face(const Walk& walk, Segment& line, const Light& light) {
-    const vec3 radiance = radiance_of(light) * face_picture(*light.area, line.rest.at(line.end));
-    add_light(walk, line, radiance * line.through, OtherLight::emission, line.walker.in_fog);
-    line.walking = false, line.through = 0;
+void hit_face(const PathState& state, Segment& line, const Light& light) {
+    const vec3 radiance = radiance_of(light) * face_texture(*light.area, line.rest.at(line.end));
+    add_light(state, line, radiance * line.transmittance, OtherLight::emission, line.vertex.in_fog);
+    line.unscattered = false, line.transmittance = 0;
 }
 
-void follow_lines(const Walk& walk) {
-    std::vector<Segment>& lines = walk.scratch.lines;
-    const bool shown = walk.order == 0 && shows_faces(walk.snapshot);
+void follow_lines(const PathState& state) {
+    std::vector<Segment>& lines = state.scratch.lines;
+    const bool shown = state.order == 0 && shows_faces(state.snapshot);
     for (int layer = 0; layer < max_layers && !lines.empty(); ++layer) {
         Ray tested[16];
         Hits hits;
         int faces[16];
-        find_ends(walk, tested, hits);
+        find_ends(state, tested, hits);
         std::fill_n(faces, 16, -1);
-        if (shown) find_faces(walk, tested, hits, {faces, lines.size()});
+        if (shown) find_faces(state, tested, hits, {faces, lines.size()});
         for (size_t i = 0; i < lines.size(); ++i) {
             Segment& line = lines[i];
             line.layer = layer;
-            if (line.walker.peak > 0) meet_faces(walk, line);
-            follow_fog(walk, line);
+            if (line.vertex.peak > 0) hit_faces(state, line);
+            follow_fog(state, line);
             if (faces[i] >= 0) {
-                meet_face(walk, line, walk.snapshot.lights[static_cast<size_t>(faces[i])]);
+                hit_face(state, line, state.snapshot.lights[static_cast<size_t>(faces[i])]);
                 continue;
             }
             if (hits.instance[i] < 0) {
-                leave(walk, line);
+                leave(state, line);
                 continue;
             }
             if (!line.open()) continue;
-            SurfacePoint surface = walk.snapshot.occluders->surface(tested[i], hits, static_cast<int>(i));
+            SurfacePoint surface = state.snapshot.occluders->surface(tested[i], hits, static_cast<int>(i));
             if (hits.instance[i] == line.instance && hits.triangle[i] == line.triangle) surface.alpha = 0;
             if (layer + 1 == max_layers) surface.alpha = 1;
-            meet_surface(walk, line, surface, hits.instance[i], hits.triangle[i]);
+            hit_surface(state, line, surface, hits.instance[i], hits.triangle[i]);
         }
-        connect(walk.tracer, walk.scratch.connections, walk.batch, walk.results);
+        connect(state.tracer, state.scratch.connections, state.batch, state.results);
         std::erase_if(lines, [](const Segment& line) { return !line.open(); });
     }
 }
 }
 
-void add_light(const Walk& walk, const Segment& line, vec3 radiance, size_t part, bool in_fog) {
-    const size_t lane = line.walker.lane;
-    const vec3 added = line.walker.throughput * radiance;
-    (in_fog ? walk.results[lane].radiance : walk.results[lane].surface) += added;
-    if (in_fog && !walk.batch.parts.empty()) walk.batch.part(lane, part) += added;
+void add_light(const PathState& state, const Segment& line, vec3 radiance, size_t part, bool in_fog) {
+    const size_t lane = line.vertex.lane;
+    const vec3 added = line.vertex.throughput * radiance;
+    (in_fog ? state.results[lane].radiance : state.results[lane].surface) += added;
+    if (in_fog && !state.batch.parts.empty()) state.batch.part(lane, part) += added;
 }
 
-void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight light, bool in_fog) {
-    add_light(walk, line, radiance, walk.batch.parts.empty() ? 0 : walk.batch.index_of(light), in_fog);
+void add_light(const PathState& state, const Segment& line, vec3 radiance, OtherLight light, bool in_fog) {
+    add_light(state, line, radiance, state.batch.parts.empty() ? 0 : state.batch.index_of(light), in_fog);
 }
 
-EmissivePlace pick_fire(const Walk& walk, const Segment& line) {
+EmissionSample pick_fire(const PathState& state, const Segment& line) {
     const vec2 first = line.numbers(use_fire), second = line.numbers(use_in_fire);
-    return pick_emissive_place(*walk.tracer.fire, first.x, {first.y, second.x, second.y});
+    return sample_emission(*state.tracer.fire, first.x, {first.y, second.x, second.y});
 }
 
-void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog) {
-    connection.lane = line.walker.lane, connection.in_fog = in_fog;
-    connection.light = line.walker.throughput * light;
+void queue(const PathState& state, Segment& line, Connection connection, vec3 light, bool in_fog) {
+    connection.lane = line.vertex.lane, connection.in_fog = in_fog;
+    connection.light = line.vertex.throughput * light;
     connection.random = {hash(line.random.key, line.random.count++, 1u)};
-    if (max_component(connection.light) > 0) walk.scratch.connections.push_back(connection);
+    if (max_component(connection.light) > 0) state.scratch.connections.push_back(connection);
 }
 
-void scatter(const Walk& walk, const Segment& line, const Turn& turn, bool in_fog) {
-    const bool looks = walk.tracer.has_emission || turn.peak > 0;
-    const bool blind = walk.order + 1 >= walk.tracer.settings.orders && !looks;
-    PathVertex next = line.walker;
-    next.ray = turn.ray, next.skip = 0, next.in_fog = in_fog;
-    next.density = turn.density, next.sky_scale = turn.sky_scale, next.peak = turn.peak;
-    next.throughput *= turn.share;
+void scatter(const PathState& state, const Segment& line, const ScatterEvent& event, bool in_fog) {
+    const bool looks = state.tracer.has_emission || event.peak > 0;
+    const bool blind = state.order + 1 >= state.tracer.settings.orders && !looks;
+    PathVertex next = line.vertex;
+    next.ray = event.ray, next.skip = 0, next.in_fog = in_fog;
+    next.density = event.density, next.sky_scale = event.sky_scale, next.peak = event.peak;
+    next.throughput *= event.share;
     const float brightness = max_component(next.throughput);
     if (blind || !(brightness > 0)) return;
-    if (walk.order + 1 >= certain_orders && brightness < 1) {
+    if (state.order + 1 >= certain_orders && brightness < 1) {
         if (line.numbers(use_roulette).x >= brightness) return;
         next.throughput /= brightness;
     }
-    walk.scratch.walkers.push_back(next);
+    state.scratch.vertices.push_back(next);
 }
 
-void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, int instance, int triangle) {
-    const float share = line.through * surface.alpha;
-    const bool held = walk.order == 0 && is_matte(walk.snapshot, instance); // seen by the camera
-    if (held) walk.results[line.walker.lane].held += share;
+void hit_surface(const PathState& state, Segment& line, const SurfacePoint& surface, int instance, int triangle) {
+    const float share = line.transmittance * surface.alpha;
+    const bool holdout = state.order == 0 && is_matte(state.snapshot, instance); // seen by the camera
+    if (holdout) state.results[line.vertex.lane].holdout += share;
     // The eye sees emissive surfaces even if they illuminate nothing.
-    if (!held && (walk.tracer.surfaces_emit || walk.order == 0) && max_component(surface.emission) > 0) {
+    if (!holdout && (state.tracer.surfaces_emit || state.order == 0) && max_component(surface.emission) > 0) {
         const float aimed =
-            line.walker.density > 0 ? target_density(walk.tracer, line, surface, instance, triangle) : 0;
-        const float weight = aimed > 0 ? line.walker.density / (line.walker.density + aimed) : 1;
-        add_light(walk, line, surface.emission * (share * weight), OtherLight::emission, line.walker.in_fog);
+            line.vertex.density > 0 ? target_density(state.tracer, line, surface, instance, triangle) : 0;
+        const float weight = aimed > 0 ? line.vertex.density / (line.vertex.density + aimed) : 1;
+        add_light(state, line, surface.emission * (share * weight), OtherLight::emission, line.vertex.in_fog);
     }
-    if (walk.turns && share > 0 && !held) gather_at_surface(walk, line, surface, share);
-    if (line.walking && (surface.alpha >= 1 || line.numbers(use_blend).x < surface.alpha)) {
-        line.walking = false;
-        if (walk.turns && !held) bounce(walk, line, surface);
+    if (state.scatters && share > 0 && !holdout) gather_at_surface(state, line, surface, share);
+    if (line.unscattered && (surface.alpha >= 1 || line.numbers(use_blend).x < surface.alpha)) {
+        line.unscattered = false;
+        if (state.scatters && !holdout) bounce(state, line, surface);
     }
 
     // Continues behind the surface, offset by more than rounding errors.
-    line.through *= 1 - surface.alpha;
+    line.transmittance *= 1 - surface.alpha;
     const float t = line.end;
     line.rest.origin = line.rest.at(t);
     line.rest.t_max -= t;
@@ -263,23 +264,23 @@ void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, 
 
 void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scatter> results) {
     static thread_local PathScratch scratch;
-    scratch.walkers.clear(), scratch.connections.clear();
+    scratch.vertices.clear(), scratch.connections.clear();
     std::fill(results.begin(), results.end(), Scatter{});
     for (size_t lane = 0; lane < batch.rays.size(); ++lane) {
-        PathVertex walker;
-        walker.lane = lane, walker.ray = batch.rays[lane], walker.id = batch.ids[lane];
-        walker.skip = batch.clip_near.empty() ? 0 : batch.clip_near[lane];
-        walker.place = batch.places.empty() ? SamplePlace{walker.id, 0} : batch.places[lane];
-        scratch.walkers.push_back(walker);
+        PathVertex vertex;
+        vertex.lane = lane, vertex.ray = batch.rays[lane], vertex.id = batch.ids[lane];
+        vertex.skip = batch.clip_near.empty() ? 0 : batch.clip_near[lane];
+        vertex.sample = batch.places.empty() ? SampleIndex{vertex.id, 0} : batch.places[lane];
+        scratch.vertices.push_back(vertex);
     }
     const int orders = tracer.settings.orders;
-    for (int order = 0; order <= orders && !scratch.walkers.empty(); ++order) {
+    for (int order = 0; order <= orders && !scratch.vertices.empty(); ++order) {
         // Light of paths that this limit cuts off is missing: the sample is marked invalid.
         if (order == all_orders)
-            for (const PathVertex& walker : scratch.walkers) results[walker.lane].validity = 0;
-        const Walk walk{tracer, tracer.snapshot, batch, results, scratch, order, order < orders};
-        start_lines(walk);
-        follow_lines(walk);
+            for (const PathVertex& vertex : scratch.vertices) results[vertex.lane].validity = 0;
+        const PathState state{tracer, tracer.snapshot, batch, results, scratch, order, order < orders};
+        start_lines(state);
+        follow_lines(state);
     }
 }
 }

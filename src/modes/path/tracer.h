@@ -20,9 +20,9 @@ struct PathTracer {
     bool surfaces_emit = true; // whether they illuminate fog and other surfaces
     Camera camera;
     ivec2 size{0};
-    std::shared_ptr<const EmissiveTriangles> glow; // emissive surfaces, for light sampling; null = none
-    std::shared_ptr<const EmissiveBricks> fire;    // media that only emit, taken out of the snapshot; null = none
-    std::vector<float> peaks;                      // of the media's phase functions, 1/sr; empty = no area lights
+    std::shared_ptr<const EmissiveTriangles> emitters; // emissive surfaces, for light sampling; null = none
+    std::shared_ptr<const EmissiveBricks> fire;        // media that only emit, taken out of the snapshot; null = none
+    std::vector<float> peaks;                          // of the media's phase functions, 1/sr; empty = no area lights
     bool finds_sky = false;    // lines that leave the scene add the environment too; else only light sampling does
     bool has_emission = false; // lines may meet emission of fog, surfaces or surroundings
 };

@@ -41,28 +41,28 @@ struct PathVertex {
     float sky_scale = 0; // factor on environment light that the line finds; 0 = it does not look for it
     float peak = 0;      // of the phase function at its start, 1/sr, if the line looks for faces of lights; else 0
     bool in_fog = false; // the path's first event was in fog
-    SamplePlace place{0, 0};
+    SampleIndex sample{0, 0};
     uint32_t id = 0;
 };
 
 // The current line of a path.
 struct Segment {
-    PathVertex walker;
+    PathVertex vertex;
     Ray rest;                         // from the last BLEND surface on
     float skip = 0, travelled = 0;    // travelled: up to the start of `rest`
     float end = 0;                    // of the current segment, along `rest`
-    float through = 1;                // transmittance of fog and surfaces so far
+    float transmittance = 1;          // transmittance of fog and surfaces so far
     int instance = -1, triangle = -1; // surface just passed
-    bool walking = true;              // the path has not scattered yet
+    bool unscattered = true;          // the path has not scattered yet
     int order = 0, layer = 0;
     RandomStream random;
 
     vec2 numbers(Use use) const {
         const uint32_t step = static_cast<uint32_t>(order * max_layers + layer);
-        const Sample2 u = sample2(walker.place.index, hash(walker.place.sequence, step, static_cast<uint32_t>(use)));
+        const Sample2 u = sample2(vertex.sample.index, hash(vertex.sample.sequence, step, static_cast<uint32_t>(use)));
         return {u.x, u.y};
     }
-    bool open() const { return walking || through > 0; }
+    bool open() const { return unscattered || transmittance > 0; }
 };
 
 // Extinctions and albedos of all media at a point.
@@ -95,67 +95,67 @@ struct FogPoint {
 // Memory that a thread reuses from batch to batch.
 struct PathScratch {
     std::vector<Segment> lines;
-    std::vector<PathVertex> walkers;
+    std::vector<PathVertex> vertices;
     std::vector<Connection> connections;
     std::vector<LineLight> lights;
     FogPoint fog;
 };
 
 // State of one batch.
-struct Walk {
+struct PathState {
     const PathTracer& tracer;
     const Snapshot& snapshot;
     const RayBatch& batch;
     std::span<Scatter> results;
     PathScratch& scratch;
     int order = 0;
-    bool turns = true; // whether paths may scatter at the end of the current lines
+    bool scatters = true; // whether paths may scatter at the end of the current lines
 };
 
 // Adds radiance times the path's throughput, without the line's attenuation, as other light or as that of a light of
 // the snapshot.
-void add_light(const Walk& walk, const Segment& line, vec3 radiance, OtherLight light, bool in_fog);
-void add_light(const Walk& walk, const Segment& line, vec3 radiance, size_t light, bool in_fog);
+void add_light(const PathState& state, const Segment& line, vec3 radiance, OtherLight light, bool in_fog);
+void add_light(const PathState& state, const Segment& line, vec3 radiance, size_t light, bool in_fog);
 
 // Unbiased estimate of the transmittance of fog between two distances of the current segment (ratio tracking).
-float passing_share(const Walk& walk, Segment& line, Interval<float> range);
+float line_transmittance(const PathState& state, Segment& line, Interval<float> range);
 
 // Queues a connection that contributes `light` times the path's throughput if nothing is in its way.
-void queue(const Walk& walk, Segment& line, Connection connection, vec3 light, bool in_fog);
+void queue(const PathState& state, Segment& line, Connection connection, vec3 light, bool in_fog);
 
 // Pdf, 1/m, with which a path finds a point of the fire by colliding there, scaled for MIS against other techniques.
-float colliding_chance(const Snapshot& snapshot, vec3 position, int& lookups);
+float collision_pdf(const Snapshot& snapshot, vec3 position, int& lookups);
 
 // Samples a point in emissive fog for a connection.
-EmissivePlace pick_fire(const Walk& walk, const Segment& line);
+EmissionSample pick_fire(const PathState& state, const Segment& line);
 
 // Adds environment light from one sampled direction, at a point that scatters `share(direction)`, 1/sr, into the line
 // and samples directions itself with the pdf `density(direction)`, 1/sr.
 template<class Share, class Density>
-void gather_sky(const Walk& walk, Segment& line, vec3 point, vec3 face_normal, float scale, bool in_fog,
+void gather_sky(const PathState& state, Segment& line, vec3 point, vec3 face_normal, float scale, bool in_fog,
                 const Share& share, const Density& density) {
-    const EnvironmentSample sky = sample_environment(*walk.snapshot.environment, line.numbers(use_sky));
-    const float own = walk.tracer.finds_sky ? density(sky.direction) : 0;
+    const EnvironmentSample sky = sample_environment(*state.snapshot.environment, line.numbers(use_sky));
+    const float own = state.tracer.finds_sky ? density(sky.direction) : 0;
     if (!(sky.density > 0)) return;
-    Connection connection = connection_to_sky(*walk.snapshot.environment, point, sky.direction);
+    Connection connection = connection_to_sky(*state.snapshot.environment, point, sky.direction);
     connection.face_normal = face_normal;
-    queue(walk, line, connection, share(sky.direction) * sky.radiance * (scale / (sky.density + own)), in_fog);
+    queue(state, line, connection, share(sky.direction) * sky.radiance * (scale / (sky.density + own)), in_fog);
 }
 
 // A scattering event: the path's next line, its weight, and values for its PathVertex.
-struct Turn {
+struct ScatterEvent {
     Ray ray;
     vec3 share{1};
     float density = 0, sky_scale = 0, peak = 0;
 };
 
 // Starts the path's next line, unless Russian roulette ends the path.
-void scatter(const Walk& walk, const Segment& line, const Turn& turn, bool in_fog);
+void scatter(const PathState& state, const Segment& line, const ScatterEvent& event, bool in_fog);
 
 // Adds light from the fog of the current segment, then tests whether the path collides there and scatters.
-void follow_fog(const Walk& walk, Segment& line);
+void follow_fog(const PathState& state, Segment& line);
 
 // Handles the surface at the end of the current segment: adds its emission and the direct light it reflects, may
 // scatter the path there, and moves the line on to what lies behind.
-void meet_surface(const Walk& walk, Segment& line, const SurfacePoint& surface, int instance, int triangle);
+void hit_surface(const PathState& state, Segment& line, const SurfacePoint& surface, int instance, int triangle);
 }

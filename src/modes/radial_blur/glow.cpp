@@ -34,8 +34,8 @@ void see_through(const Snapshot& snapshot, const Light& light, const Occluders::
 }
 }
 
-BlurGlow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurLight& light, ivec2 size) {
-    BlurGlow glow(size, 1);
+BlurImage unoccluded_image(const View& view, const Snapshot& snapshot, const BlurLight& light, ivec2 size) {
+    BlurImage glow(size, 1);
     const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(view.size.y);
     const vec2 center = light.position * vec2(size) / vec2(view.size);
     parallel_for(size.y, [&](int64_t row) {
@@ -60,9 +60,9 @@ BlurGlow unoccluded_glow(const View& view, const Snapshot& snapshot, const BlurL
     return glow;
 }
 
-BlurGlow highlights_glow(const Image<vec3>& color, float threshold, ivec2 size) {
+BlurImage highlights_image(const Image<vec3>& color, float threshold, ivec2 size) {
     const Image<vec3> bright = shrunk(color, size, [&](vec3 pixel) { return pixel * share_above(pixel, threshold); });
-    BlurGlow glow(size, 3);
+    BlurImage glow(size, 3);
     for (int channel = 0; channel < 3; ++channel)
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x) glow.row(static_cast<size_t>(channel), y)[x] = bright.at(x, y)[channel];

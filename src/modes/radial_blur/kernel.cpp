@@ -29,7 +29,7 @@ struct Taps {
     Floats u, v;
 
     HWY_INLINE Taps(const Floats& x, const Floats& y, int stride) {
-        const Floats px = x + (BlurGlow::frame - 0.5f), py = y + (BlurGlow::frame - 0.5f);
+        const Floats px = x + (BlurImage::frame - 0.5f), py = y + (BlurImage::frame - 0.5f);
         const Ints column = truncate(px), row = truncate(py);
         u = px - to_floats(column), v = py - to_floats(row);
         index = row * stride + column;
@@ -39,8 +39,8 @@ struct Taps {
         Floats a, b, c, d;
         gather_pairs(plane.pixels.data(), index, a, b);
         gather_pairs(plane.pixels.data() + plane.size.x, index, c, d);
-        const Floats upper = fused(b - a, u, a), lower = fused(d - c, u, c);
-        return fused(lower - upper, v, upper);
+        const Floats upper = fma(b - a, u, a), lower = fma(d - c, u, c);
+        return fma(lower - upper, v, upper);
     }
 };
 
@@ -63,12 +63,12 @@ HWY_INLINE Lines lines_to(vec2 center, float radius, const BlurLine& line, ivec2
     const float count = static_cast<float>(line.weights.size());
     Lines lines;
     lines.step_x = (center.x - x) * (line.density / count), lines.step_y = (center.y - y) * (line.density / count);
-    lines.x = fused(shift, lines.step_x, x), lines.y = fused(shift, lines.step_y, y);
+    lines.x = fma(shift, lines.step_x, x), lines.y = fma(shift, lines.step_y, y);
 
     // Samples outside are black: the loop covers those that are inside for any of the 16 pixels.
     Floats low = 0.0f, high = count - 1;
     const Floats off_x = center.x - lines.x, off_y = center.y - lines.y;
-    const Floats away = sqrt(fused(off_x, off_x, off_y * off_y));
+    const Floats away = sqrt(fma(off_x, off_x, off_y * off_y));
     const Floats entry = (1.0f - radius / max(away, 1e-6f)) * (count / line.density) - 1.0f;
     low = select(away > radius, max(low, entry), low);
     keep_inside(lines.x, lines.step_x, size.x, low, high);
@@ -79,21 +79,21 @@ HWY_INLINE Lines lines_to(vec2 center, float radius, const BlurLine& line, ivec2
 }
 
 template<size_t planes>
-HWY_INLINE void sum_along(const Lines& lines, const BlurLine& line, const BlurGlow& source, Floats* sums) {
+HWY_INLINE void sum_along(const Lines& lines, const BlurLine& line, const BlurImage& source, Floats* sums) {
     const float right = static_cast<float>(source.size.x) + 1, bottom = static_cast<float>(source.size.y) + 1;
     const int stride = source.planes[0].size.x;
     for (int i = lines.low; i <= lines.high; ++i) {
         const float k = static_cast<float>(i);
-        const Floats x = min(max(fused(lines.step_x, k, lines.x), -1.0f), right);
-        const Floats y = min(max(fused(lines.step_y, k, lines.y), -1.0f), bottom);
+        const Floats x = min(max(fma(lines.step_x, k, lines.x), -1.0f), right);
+        const Floats y = min(max(fma(lines.step_y, k, lines.y), -1.0f), bottom);
         const Taps taps(x, y, stride);
         for (size_t p = 0; p < planes; ++p)
-            sums[p] = fused(taps.of(source.planes[p]), line.weights[static_cast<size_t>(i)], sums[p]);
+            sums[p] = fma(taps.of(source.planes[p]), line.weights[static_cast<size_t>(i)], sums[p]);
     }
 }
 
-void blur_row_kernel(const BlurGlow& source, const BlurLine& line, vec2 center, float radius, const View& view, int y,
-                     BlurGlow& result) {
+void blur_row_kernel(const BlurImage& source, const BlurLine& line, vec2 center, float radius, const View& view, int y,
+                     BlurImage& result) {
     for (int x0 = 0; x0 < source.size.x; x0 += 16) {
         alignas(64) float shift[16], pixels[16];
         for (int i = 0; i < 16; ++i) shift[i] = to_unit(jitter_bits(view.jitter, {x0 + i, y}, view.frame, view.seed));
@@ -108,7 +108,7 @@ void blur_row_kernel(const BlurGlow& source, const BlurLine& line, vec2 center, 
     }
 }
 
-void add_row_kernel(const BlurGlow& glow, vec3 color, int y, Image<vec3>& sum, Image<vec3>* part) {
+void add_row_kernel(const BlurImage& glow, vec3 color, int y, Image<vec3>& sum, Image<vec3>* part) {
     const vec2 scale = vec2(glow.size) / vec2(sum.size), last = vec2(glow.size) - 0.5f;
     const float down = std::clamp((static_cast<float>(y) + 0.5f) * scale.y, 0.5f, last.y);
     const size_t planes = glow.planes.size();
@@ -135,8 +135,8 @@ namespace tyndall {
 HWY_EXPORT(blur_row_kernel);
 HWY_EXPORT(add_row_kernel);
 
-BlurGlow blurred(const BlurGlow& source, const BlurLine& line, vec2 center, float radius, const View& view) {
-    BlurGlow result(source.size, source.planes.size());
+BlurImage blurred(const BlurImage& source, const BlurLine& line, vec2 center, float radius, const View& view) {
+    BlurImage result(source.size, source.planes.size());
     parallel_for(source.size.y, [&](int64_t y) {
         HWY_DYNAMIC_DISPATCH(blur_row_kernel)
         (source, line, center, radius, view, static_cast<int>(y), result);
@@ -144,7 +144,7 @@ BlurGlow blurred(const BlurGlow& source, const BlurLine& line, vec2 center, floa
     return result;
 }
 
-void add_glow(const BlurGlow& glow, vec3 color, Image<vec3>& sum, Image<vec3>* part) {
+void add_glow(const BlurImage& glow, vec3 color, Image<vec3>& sum, Image<vec3>* part) {
     parallel_for(sum.size.y, [&](int64_t y) {
         HWY_DYNAMIC_DISPATCH(add_row_kernel)(glow, color, static_cast<int>(y), sum, part);
     });

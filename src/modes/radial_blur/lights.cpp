@@ -12,7 +12,7 @@ namespace tyndall {
 namespace {
 constexpr float far_away = 1e5f; // distance, in scene extents, of the point that stands for a sun
 
-float smooth(float x) {
+float smoothstep(float x) {
     const float t = std::clamp(x, 0.0f, 1.0f);
     return t * t * (3 - 2 * t);
 }
@@ -21,7 +21,7 @@ float smooth(float x) {
 // evaluated at the center.
 float glow_of(const Phase& phase, double cosine) {
     if (!phase.shape) return phase_value(phase, 1);
-    return static_cast<float>((1 - share_below(*phase.shape, cosine)) / (2 * std::numbers::pi * (1 - cosine)));
+    return static_cast<float>((1 - cosine_cdf(*phase.shape, cosine)) / (2 * std::numbers::pi * (1 - cosine)));
 }
 
 // Radiance of homogeneous fog along the line of sight straight at a sun: Σ albedo p (1 - e^-depth). `angle`: angular
@@ -59,7 +59,7 @@ float pixels_per_metre(const View& view, float depth) {
 
 float blur_fade(vec2 position, ivec2 size, float fade) {
     const vec2 off = glm::abs(position / vec2(size) * 2.0f - 1.0f);
-    return 1 - smooth((std::max(off.x, off.y) - 1) / fade);
+    return 1 - smoothstep((std::max(off.x, off.y) - 1) / fade);
 }
 
 std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, const RadialBlurSettings& settings) {

@@ -24,22 +24,22 @@ struct RadialBlur {
     BlurLine line;
 };
 
-Addition added_rays(const RadialBlur& blur, const PlainPicture& picture) {
+PostOutput added_rays(const RadialBlur& blur, const PostInput& input) {
     const View& view = blur.view;
-    const ivec2 size = shared_size(view.size, blur.settings.resolution);
-    Addition addition{Image<vec3>(view.size), Image<float>(view.size, 1.0f), {}};
+    const ivec2 size = reduced_size(view.size, blur.settings.resolution);
+    PostOutput addition{Image<vec3>(view.size), Image<float>(view.size, 1.0f), {}};
     if (view.fog_parts) addition.per_light.assign(blur.snapshot.lights.size(), Image<vec3>(view.size));
     if (blur.lights.empty()) return addition;
 
     const bool highlights = blur.settings.source == BlurSource::highlights;
-    const BlurGlow bright =
-        highlights ? highlights_glow(picture.color, blur.settings.threshold, size) : BlurGlow({}, 1);
+    const BlurImage bright =
+        highlights ? highlights_image(input.color, blur.settings.threshold, size) : BlurImage({}, 1);
     for (const BlurLight& light : blur.lights) {
         const vec2 center = light.position * vec2(size) / vec2(view.size);
         const float radius = light.radius * static_cast<float>(size.y) / static_cast<float>(view.size.y);
-        const BlurGlow smeared =
+        const BlurImage smeared =
             highlights ? blurred(bright, blur.line, center, infinity, view)
-                       : blurred(unoccluded_glow(view, blur.snapshot, light, size), blur.line, center, radius, view);
+                       : blurred(unoccluded_image(view, blur.snapshot, light, size), blur.line, center, radius, view);
         const vec3 color = (highlights ? vec3(light.share) : light.color) * light.fade;
         add_glow(smeared, color, addition.radiance, view.fog_parts ? &addition.per_light[light.index] : nullptr);
     }
@@ -61,7 +61,7 @@ PostFunction post_radial_blur(const View& view, const Snapshot& snapshot, const 
     average_filters(blur->snapshot);
     blur->lights = blur_lights(view, blur->snapshot, settings.of<RadialBlurSettings>());
     blur->line = make_line(settings.of<RadialBlurSettings>());
-    return [blur](const PlainPicture& picture) { return added_rays(*blur, picture); };
+    return [blur](const PostInput& input) { return added_rays(*blur, input); };
 }
 
 Mode radial_blur_mode() {

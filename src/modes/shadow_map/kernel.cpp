@@ -21,7 +21,7 @@ Totals march_rays(const Packet& packet) {
     store(depth, scratch.depth.data());
     for (int k = 0; k < packet.steps; ++k, extinctions += packet.media()) {
         const Floats low = packet.border(k), length = packet.border(k + 1) - low;
-        const Vec3s position = packet.at(fused(packet.jitter, length, low));
+        const Vec3s position = packet.at(fma(packet.jitter, length, low));
         const Floats extinction = extinction_at(packet, position, extinctions), inside = extinction * length;
         const Mask16 active = inside > 0.0f;
         Floats weight = 0.0f;
@@ -29,8 +29,8 @@ Totals march_rays(const Packet& packet) {
             totals.taken = totals.taken + select(active, 1.0f, 0.0f);
             const Floats mean = mean_transmittance(inside);
             weight =
-                zero_unless(active, seen_share(packet, totals.transmittance, depth, inside, mean, position) * length);
-            for (size_t m = 0; m < packet.media(); ++m) add(load(extinctions[m].data()) * weight, scratch.glowing[m]);
+                zero_unless(active, view_weight(packet, totals.transmittance, depth, inside, mean, position) * length);
+            for (size_t m = 0; m < packet.media(); ++m) add(load(extinctions[m].data()) * weight, scratch.isotropic[m]);
             depth = depth + inside;
             totals.transmittance = totals.transmittance * (1.0f - inside * mean); // e^-D = 1 - D·mean(D)
         }
@@ -55,11 +55,11 @@ void march_sun(const Packet& packet, size_t index) {
         const Floats low = packet.border(k), length = packet.border(k + 1) - low;
         Floats share = is_lit == Lit::all ? static_cast<float>(lookups) : 0.0f;
         for (int i = 0; i < lookups && is_lit == Lit::some; ++i)
-            share = share + rays.lit_share(fused((packet.jitter + static_cast<float>(i)) * part, length, low));
+            share = share + rays.lit_share(fma((packet.jitter + static_cast<float>(i)) * part, length, low));
         share = share * weight;
         const Mask16 lit = share > 0.0f;
         if (!any(lit)) continue;
-        const Vec3s position = packet.at(fused(packet.jitter, length, low));
+        const Vec3s position = packet.at(fma(packet.jitter, length, low));
         const Floats dimmed = share * part * exp(-light_depth16(packet.march.depths[index], position, lit));
         for (size_t m = 0; m < packet.media(); ++m)
             add(load(scratch.extinction[static_cast<size_t>(k) * packet.media() + m].data()) * dimmed, scattered[m]);
@@ -78,11 +78,11 @@ void color_ray(const Packet& packet, size_t lane, Scatter& result) {
     result.radiance = vec3(0);
     for (size_t m = 0; m < packet.media(); ++m) {
         const Optics& optics = snapshot.media[m].optics;
-        const float glowing = packet.scratch.glowing[m][lane];
-        result.radiance += source_radiance(optics, snapshot.ambient) * glowing;
+        const float isotropic = packet.scratch.isotropic[m][lane];
+        result.radiance += source_radiance(optics, snapshot.ambient) * isotropic;
         if (!apart) continue;
-        batch.part(lane, batch.index_of(OtherLight::ambient)) += optics.albedo * snapshot.ambient * glowing;
-        batch.part(lane, batch.index_of(OtherLight::emission)) += source_radiance(optics, vec3(0)) * glowing;
+        batch.part(lane, batch.index_of(OtherLight::ambient)) += optics.albedo * snapshot.ambient * isotropic;
+        batch.part(lane, batch.index_of(OtherLight::emission)) += source_radiance(optics, vec3(0)) * isotropic;
     }
     for (size_t i = 0; i < packet.lights(); ++i) {
         vec3 part(0);
@@ -97,7 +97,7 @@ void color_ray(const Packet& packet, size_t lane, Scatter& result) {
 }
 
 // Validity of a ray's steps: size of the fog's finest detail as a fraction of a step, at most 1.
-float trust(const ShadowMapMarch& march, float first, float last) {
+float validity_of(const ShadowMapMarch& march, float first, float last) {
     const float step = (last - first) / static_cast<float>(march.settings.steps);
     return step > march.detail ? march.detail / step : 1.0f;
 }
@@ -116,7 +116,7 @@ void march_shadow_maps_kernel(const ShadowMapMarch& march, const RayBatch& batch
     for (size_t lane = 0; lane < batch.rays.size(); ++lane) {
         color_ray(packet, lane, results[lane]);
         results[lane].transmittance = transmittance[lane];
-        results[lane].validity = trust(march, first[lane], last[lane]);
+        results[lane].validity = validity_of(march, first[lane], last[lane]);
         results[lane].steps = static_cast<int>(taken[lane]);
     }
 }

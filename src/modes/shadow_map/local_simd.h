@@ -40,7 +40,7 @@ struct DepthAlong {
         }
         const Floats before = gather(border, here), depth_before = gather(depth, here);
         const Floats share = (t - before) / max(next - before, 1e-12f);
-        return fused(gather(depth + 16, here) - depth_before, max(min(share, 1.0f), 0.0f), depth_before);
+        return fma(gather(depth + 16, here) - depth_before, max(min(share, 1.0f), 0.0f), depth_before);
     }
 };
 
@@ -95,7 +95,7 @@ struct Spaced {
     }
     Floats at(int k, int steps) const {
         if (k == 0 || k == steps) return k ? high : low;
-        const Floats place = fused(angle, static_cast<float>(k), first);
+        const Floats place = fma(angle, static_cast<float>(k), first);
         if (narrow) return max(min(scale * 0.5f * (exp(place) - exp(-place)), high), low);
         return max(min(even ? place : scale * tan(place), high), low);
     }
@@ -143,8 +143,8 @@ void march_light(const Packet& packet, size_t index, Floats& taken) {
         const Floats high = spaced.at(k + 1, packet.steps), length = high - low;
         const EquiAngular16 turning({low, high}, scale);
         const Floats slope = turning.slope(packet.jitter);
-        const Vec3s position = fused(packet.direction, passing.nearest + slope * scale, packet.origin);
-        const LightSamples light_at = arriving(light, march.cones[index], position);
+        const Vec3s position = fma(packet.direction, passing.nearest + slope * scale, packet.origin);
+        const LightSamples light_at = arrival16(light, march.cones[index], position);
         Mask16 active = reached & (length > 0.0f) & (light_at.amount > 0.0f);
         Floats share = 0.0f;
         if (any(active)) share = lit_share_of(packet, rays, turning, passing.nearest);
@@ -152,7 +152,7 @@ void march_light(const Packet& packet, size_t index, Floats& taken) {
         if (any(active)) {
             const Floats extinction = extinction_at(packet, position, extinctions), inside = extinction * length;
             const Floats depth = along.at(passing.nearest + low);
-            const Floats seen = seen_share(packet, exp(-depth), depth, inside, mean_transmittance(inside), position);
+            const Floats seen = view_weight(packet, exp(-depth), depth, inside, mean_transmittance(inside), position);
             const Floats dimmed = exp(-light_depth16(march.depths[index], position, active));
             const Floats weight = zero_unless(active, turning.length(seen, slope) * light_at.amount * share * dimmed);
             const Floats cosine = dot(light_at.to_light, packet.direction);

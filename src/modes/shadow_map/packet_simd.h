@@ -32,7 +32,7 @@ struct Scratch {
     std::vector<Lit> lit;            // lit by suns, per step: [light · steps + step]
     std::vector<float> weight;       // per step: its length times the fraction of its light that reaches the eye
     std::vector<Sixteen> extinction; // per step and medium: [step · media + medium]
-    std::vector<Sixteen> glowing;    // ∫ of isotropic light scattered by each medium, before its albedo
+    std::vector<Sixteen> isotropic;  // ∫ of isotropic light scattered by each medium, before its albedo
     std::vector<Sixteen> scattered;  // the same per light and medium: [light · media + medium]
     std::vector<Sixteen> tinted;     // per light with a colored gobo, all media, albedo included: [light · 3 + c]
 };
@@ -47,7 +47,7 @@ struct Packet {
     bool styled;
 
     HWY_INLINE Floats border(int k) const { return load(scratch.border.data() + 16 * k); }
-    HWY_INLINE Vec3s at(const Floats& t) const { return fused(direction, t, origin); }
+    HWY_INLINE Vec3s at(const Floats& t) const { return fma(direction, t, origin); }
     size_t media() const { return march.snapshot.media.size(); }
     size_t lights() const { return march.snapshot.lights.size(); }
 };
@@ -83,7 +83,7 @@ HWY_INLINE bool place_even_steps(const Packet& packet, const Floats& t_max) {
     }
     const Floats step = (stretch.high - stretch.low) * (1 / static_cast<float>(packet.steps));
     for (int k = 0; k <= packet.steps; ++k)
-        store(fused(step, static_cast<float>(k), stretch.low), packet.scratch.border.data() + 16 * k);
+        store(fma(step, static_cast<float>(k), stretch.low), packet.scratch.border.data() + 16 * k);
     return true;
 }
 
@@ -94,7 +94,7 @@ Packet make_packet(const ShadowMapMarch& march, const RayBatch& batch, Scratch& 
     scratch.border.resize(16 * static_cast<size_t>(steps + 1));
     scratch.depth.resize(scratch.border.size()), scratch.weight.resize(scratch.border.size());
     scratch.extinction.resize(media * static_cast<size_t>(steps + 1));
-    scratch.glowing.assign(media, {}), scratch.scattered.assign(lights * media, {});
+    scratch.isotropic.assign(media, {}), scratch.scattered.assign(lights * media, {});
     scratch.tinted.assign(march.colored ? 3 * lights : 0, {});
     const bool styled = march.style.view_depth != 1 || march.style.range < StyleSettings{}.range;
     const Packet packet{march, batch, scratch, rays.origin, rays.direction, rays.jitter, steps, styled};
@@ -125,8 +125,8 @@ struct RaysInMap {
     HWY_INLINE RaysInMap(const Packet& packet, size_t light)
         : map(*packet.march.maps[light]), origin(map_coordinates(map, packet.origin)),
           direction(turned_to_map(map, packet.direction)) {}
-    HWY_INLINE Vec3s at(const Floats& t) const { return fused(direction, t, origin); }
-    HWY_INLINE Floats lit_share(const Floats& t) const { return lit_share_at(map, at(t)); }
+    HWY_INLINE Vec3s at(const Floats& t) const { return fma(direction, t, origin); }
+    HWY_INLINE Floats lit_share(const Floats& t) const { return lit_fraction_at(map, at(t)); }
 };
 
 // A box in shadow-map coordinates.
@@ -177,8 +177,8 @@ void find_lit(const Packet& packet) {
 
 // Radiance at the eye per meter of a step, for a source of 1 per meter in it: transmittance up to the step times the
 // mean transmittance inside; with a style, its own transmittance and fade.
-HWY_INLINE Floats seen_share(const Packet& packet, const Floats& transmittance, const Floats& depth,
-                             const Floats& depth_inside, const Floats& mean_inside, const Vec3s& position) {
+HWY_INLINE Floats view_weight(const Packet& packet, const Floats& transmittance, const Floats& depth,
+                              const Floats& depth_inside, const Floats& mean_inside, const Vec3s& position) {
     if (!packet.styled) return transmittance * mean_inside;
     const StyleSettings& style = packet.march.style;
     return exp(depth * -style.view_depth) * mean_transmittance(depth_inside * style.view_depth) *

@@ -55,11 +55,11 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
     const size_t lights = snapshot.lights.size();
     scatter = with_lamps_as_emission(lights, march->snapshot.lights.size() - lights, std::move(scatter));
     scatter = with_field_light(std::move(fields), std::move(scatter));
-    const FogBufferOptions picture{settings.of<ShadowMapSettings>().fog_resolution,
+    const FogBufferOptions options{settings.of<ShadowMapSettings>().fog_resolution,
                                    settings.of<ShadowMapSettings>().blur};
-    if (history) follow(*history, view, snapshot, settings);
-    if (picture.share == Resolution::full && !picture.blur && !history) return scatter;
-    return from_fog_buffer(view, snapshot, picture, std::move(scatter), history);
+    if (history) update_history(*history, view, snapshot, settings);
+    if (options.resolution == Resolution::full && !options.blur && !history) return scatter;
+    return from_fog_buffer(view, snapshot, options, std::move(scatter), history);
 }
 
 Mode shadow_map_mode() {
@@ -74,7 +74,7 @@ Mode shadow_map_mode() {
             .set_quality = set_shadow_map_quality,
             .rungs = shadow_map_rungs,
             .color = "#009E73",
-            .remembers = true,
+            .uses_history = true,
             .interactive = true,
             .adapts_steps = false};
 }

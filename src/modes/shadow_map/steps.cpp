@@ -6,7 +6,7 @@
 
 namespace tyndall {
 void place_steps(const ShadowMapMarch& march, const Ray& ray, int count, float* t, size_t stride) {
-    const Interval<float> stretch = fog_stretch(march.snapshot.media, ray);
+    const Interval<float> stretch = fog_interval(march.snapshot.media, ray);
     const auto even = [&](Interval<float> part, int first, int steps) {
         const float step = part.length() / static_cast<float>(std::max(steps, 1));
         for (int k = 0; k <= steps; ++k)

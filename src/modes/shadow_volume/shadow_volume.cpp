@@ -44,7 +44,7 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     }
     // Slices give the same result, but more slowly.
     const bool room = frame->shells || has_room_for_views(frame->snapshot, [](const Light&) { return 1; });
-    const auto by = [room](const Light&) { return room ? ShadowsBy::volumes : ShadowsBy::slices; };
+    const auto by = [room](const Light&) { return room ? ShadowMethod::volumes : ShadowMethod::slices; };
     add_lights(view, without_froxels(settings.terms.light), settings.terms.light_resolution, by, *frame);
     ScatterFunction scatter = [frame](const RayBatch& batch, std::span<Scatter> results) {
         single_scattering_packet(*frame, batch, results);

@@ -123,18 +123,18 @@ std::vector<double> shares_of_samples(const Sources& sources) {
 }
 
 // Units of samples per pixel of a tile, in an image with `scale` times the allotted samples.
-double units_of(double scale, float samples, int unit, bool goes_on) {
+double units_of(double scale, float samples, int unit, bool continues) {
     if (!(scale > 0)) return 0;
-    const double wanted = scale * samples / unit, step = wanted >= many_allotted && !goes_on ? more_batches : 1;
+    const double wanted = scale * samples / unit, step = wanted >= many_allotted && !continues ? more_batches : 1;
     return std::clamp(std::ceil(wanted / step) * step, 1.0, 1.0 * max_tile_samples - more_batches);
 }
 }
 
-Allotment allot(const Layers& layers, double taken, const Enough& enough, double power, int least) {
-    return allot(layers, samples_alike(layers, taken), enough, power, least);
+Allotment allot(const Layers& layers, double taken, const AllotLimits& limits, double power, int least) {
+    return allot(layers, uniform_samples(layers, taken), limits, power, least);
 }
 
-Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& enough, double power, int least) {
+Allotment allot(const Layers& layers, const Image<float>& taken, const AllotLimits& limits, double power, int least) {
     const Sources sources = sources_of(relative_variances(layers, taken, power), power);
     const std::vector<double> shares = shares_of_samples(sources);
     const auto at = [&](double scale) {
@@ -158,23 +158,23 @@ Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& e
     for (int i = 0; i < 40; ++i) {
         const double middle = (low + high) / 2;
         const Allotment tried = at(std::exp(middle));
-        const bool good = tried.squared_error <= enough.squared_error && tried.squared_bound <= enough.squared_bound;
-        (!good && tried.rays < enough.rays ? low : high) = middle;
+        const bool good = tried.squared_error <= limits.squared_error && tried.squared_bound <= limits.squared_bound;
+        (!good && tried.rays < limits.rays ? low : high) = middle;
     }
     return at(std::exp(high));
 }
 
-Image<float> samples_alike(const Layers& layers, double samples) {
+Image<float> uniform_samples(const Layers& layers, double samples) {
     return Image<float>(tile_count(layers), static_cast<float>(samples));
 }
 
-Image<float> samples_in(const Allotment& allotment, double scale, int unit, bool goes_on) {
+Image<float> samples_in(const Allotment& allotment, double scale, int unit, bool continues) {
     Image<float> samples = allotment.samples;
-    for (float& value : samples.pixels) value = static_cast<float>(unit * units_of(scale, value, unit, goes_on));
+    for (float& value : samples.pixels) value = static_cast<float>(unit * units_of(scale, value, unit, continues));
     return samples;
 }
 
-AllottedPart part_of(const Allotment& allotment, double from, double to, int unit, bool goes_on) {
+AllottedPart allotted_part(const Allotment& allotment, double from, double to, int unit, bool continues) {
     auto factors = std::make_shared<TileFactors>();
     const auto taken = std::make_shared<TileFactors>();
     AllottedPart part{nullptr, nullptr, {allotment.low, Image<float>(allotment.samples.size)}};
@@ -182,14 +182,14 @@ AllottedPart part_of(const Allotment& allotment, double from, double to, int uni
     *taken = *factors;
     for (size_t i = 0; i < allotment.samples.pixels.size(); ++i) {
         const float samples = allotment.samples.pixels[i];
-        const double all = units_of(to, samples, unit, goes_on), before = units_of(from, samples, unit, goes_on);
+        const double all = units_of(to, samples, unit, continues), before = units_of(from, samples, unit, continues);
         const double added = all - before;
         taken->factors.pixels[i] = static_cast<uint16_t>(before);
         factors->factors.pixels[i] = static_cast<uint16_t>(added);
         part.shares.shares.pixels[i] = static_cast<float>(added / all);
     }
     part.factors = std::move(factors);
-    if (goes_on) part.before = taken;
+    if (continues) part.before = taken;
     return part;
 }
 }

@@ -19,23 +19,23 @@ struct Allotment {
 
 // What to allot for: both error limits at the least cost, or, if that takes more, the least error with `rays` rays of
 // mean cost.
-struct Enough {
+struct AllotLimits {
     double squared_error = 0, rays = 0, squared_bound = infinity;
 };
 
 // Allots samples in proportion to (variance / cost)^(1 / (1 + power)), where the variance of a mean of n samples falls
 // as n^-power (Neyman 1934 for power 1); more where few pixels cause most of the error, and at least `least` per pixel.
 // `layers` hold the variances of means of `taken` samples and the work per sample.
-Allotment allot(const Layers& layers, double taken, const Enough& enough, double power, int least);
+Allotment allot(const Layers& layers, double taken, const AllotLimits& limits, double power, int least);
 
 // The same, with `taken` samples per pixel of each tile.
-Allotment allot(const Layers& layers, const Image<float>& taken, const Enough& enough, double power, int least);
+Allotment allot(const Layers& layers, const Image<float>& taken, const AllotLimits& limits, double power, int least);
 
 // Samples per pixel of each tile: the same number everywhere; or `scale` times the allotment, rounded up to multiples
 // of `unit`. Tiles with many samples are rounded up further, to hold more batches, unless batches continue from part to
-// part (`goes_on`).
-Image<float> samples_alike(const Layers& layers, double samples);
-Image<float> samples_in(const Allotment& allotment, double scale, int unit, bool goes_on);
+// part (`continues`).
+Image<float> uniform_samples(const Layers& layers, double samples);
+Image<float> samples_in(const Allotment& allotment, double scale, int unit, bool continues);
 
 // What an image with `to` times the allotted samples adds to one with `from` times: in multiples of `unit`. At least
 // one, or none if `from` is above 0 and rounding up has already added them.
@@ -44,5 +44,5 @@ struct AllottedPart {
     std::shared_ptr<const TileFactors> before;  // samples per batch that earlier parts took; null = the batches are new
     TileShares shares;                          // of the total
 };
-AllottedPart part_of(const Allotment& allotment, double from, double to, int unit, bool goes_on);
+AllottedPart allotted_part(const Allotment& allotment, double from, double to, int unit, bool continues);
 }

@@ -59,13 +59,13 @@ std::vector<std::string> free_rows(const Mode& mode, const Settings& settings, Q
 }
 
 bool has_integrator(const Mode& mode) {
-    return mode.accuracy != Accuracy::artistic && !error_is_noise(mode) && !ladder_rows(mode).empty();
+    return mode.accuracy != Accuracy::artistic && !is_unbiased(mode) && !ladder_rows(mode).empty();
 }
 
-bool error_can_be_told(const Mode& mode) { return error_is_noise(mode) || has_integrator(mode); }
+bool has_error_bound(const Mode& mode) { return is_unbiased(mode) || has_integrator(mode); }
 
 std::vector<Candidate> candidates_of(const Mode& mode, const Settings& settings, Quality quality) {
-    if (error_is_noise(mode)) return {{"", settings}};
+    if (is_unbiased(mode)) return {{"", settings}};
     if (!has_integrator(mode)) return {};
     const std::vector<std::string> rows = free_rows(mode, settings, quality);
     std::vector<Candidate> candidates;
@@ -76,11 +76,11 @@ std::vector<Candidate> candidates_of(const Mode& mode, const Settings& settings,
     return candidates;
 }
 
-bool binds_candidates(const Mode& mode, const Settings& settings, Quality quality) {
+bool overrides_candidates(const Mode& mode, const Settings& settings, Quality quality) {
     return free_rows(mode, settings, quality).size() < ladder_rows(mode).size();
 }
 
-Settings truth_of(const Settings& settings) {
+Settings truth_settings(const Settings& settings) {
     Settings truth = settings;
     take_rows(ladder_rows(main_mode()), settings_for(Quality::reference), truth);
     return truth;

@@ -29,13 +29,13 @@ void take_rows(std::span<const std::string> names, const Settings& from, Setting
 std::vector<Candidate> candidates_of(const Mode& mode, const Settings& settings, Quality quality);
 
 // Whether the settings override rows that candidates would set; a finer candidate may then be no more accurate.
-bool binds_candidates(const Mode& mode, const Settings& settings, Quality quality);
+bool overrides_candidates(const Mode& mode, const Settings& settings, Quality quality);
 
 // Settings at which the main mode counts as ground truth, for the same light.
-Settings truth_of(const Settings& settings);
+Settings truth_settings(const Settings& settings);
 
 // Whether the mode can render to a target error: artistic modes cannot.
-bool error_can_be_told(const Mode& mode);
+bool has_error_bound(const Mode& mode);
 
 // Whether the mode has an integration error (bias) that no number of samples removes.
 bool has_integrator(const Mode& mode);

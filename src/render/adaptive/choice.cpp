@@ -6,7 +6,7 @@
 #include <cassert>
 
 namespace tyndall {
-bool has_rivals(const Choice& choice, const Mode& mode) {
+bool from_contest(const Choice& choice, const Mode& mode) {
     return choice.scout && choice.scout->mode->name != mode.name;
 }
 
@@ -22,9 +22,9 @@ bool leaves_room(const Choice& choice, double error) {
     return choice.measured.integrator.bound <= std::pow(integrator_share * error, 2);
 }
 
-Allotment Choice::spread(const Enough& enough, int unit) const {
+Allotment Choice::spread(const AllotLimits& limits, int unit) const {
     assert(scout);
-    Enough of_scout = enough;
+    AllotLimits of_scout = limits;
     of_scout.squared_error /= noise_ratio;
     Allotment result = allot(scout->layers, scout_samples, of_scout, power, unit);
     result.squared_error *= noise_ratio;

@@ -6,7 +6,7 @@
 namespace tyndall {
 struct Choice {
     Candidate candidate;
-    Measured measured;
+    Measurement measured;
     bool has_integrator = false;             // otherwise noise is the only error
     bool is_truth = false;                   // the candidate is itself the ground truth
     double power = 1;                        // the variance of a mean of n samples falls as n^-power
@@ -17,7 +17,7 @@ struct Choice {
     double scout_variance = 0;               // of one sample of the scout, on the pilot's tiles
 
     // The best allotment for an error or a number of rays. Requires a scout.
-    Allotment spread(const Enough& enough, int unit) const;
+    Allotment spread(const AllotLimits& limits, int unit) const;
 
     // Work to reach an error if the integrator's squared error is `squared_integrator`, by default its bound. Infinite
     // if the error is out of reach.
@@ -35,7 +35,7 @@ struct Choice {
 inline constexpr double integrator_share = 0.7;
 
 // Whether the choice comes from a contest between modes: another mode rendered its scout.
-bool has_rivals(const Choice& choice, const Mode& mode);
+bool from_contest(const Choice& choice, const Mode& mode);
 
 // Noise that may remain beside the integrator's error. If that alone exceeds the target: the larger of integrator_share
 // of the target and a tenth of the integrator's error.

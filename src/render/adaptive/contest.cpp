@@ -55,13 +55,13 @@ double samples_for(const Contender& contender, double error) {
 
 // Predicts the image that a candidate renders for the goal; if it misses the goal, the best it can do.
 void predict(Contender& contender, const Goal& goal) {
-    const Measured& m = contender.choice.measured;
+    const Measurement& m = contender.choice.measured;
     const auto seconds_of = [&](double samples) { return m.prepare_seconds + samples * m.sample_seconds; };
     if (goal.error > 0) {
         contender.samples = samples_for(contender, goal.error);
         const double samples = std::min(contender.samples, 1.0 * max_target_samples);
         contender.seconds = seconds_of(samples), contender.error = std::sqrt(contender.choice.expected(samples));
-        if (goal.seconds == 0 || (contender.gets_there() && contender.seconds <= goal.seconds)) return;
+        if (goal.seconds == 0 || (contender.reaches_goal() && contender.seconds <= goal.seconds)) return;
     }
     const double samples = std::max(1.0, std::floor((goal.seconds - m.prepare_seconds) / m.sample_seconds));
     contender.seconds = seconds_of(samples), contender.error = std::sqrt(contender.choice.expected(samples));
@@ -71,12 +71,12 @@ void predict(Contender& contender, const Goal& goal) {
 // Whether a mode's finer candidates can still win.
 bool may_improve(const Contender& last, int idle, const Contender& best, const Goal& goal) {
     constexpr int max_idle = 2; // at reduced resolution, two rungs may be equally wrong near a lamp
-    const Measured& m = last.choice.measured;
+    const Measurement& m = last.choice.measured;
     const double least = m.prepare_seconds + m.sample_seconds;
     if (!last.choice.has_integrator) return false;
     if (idle >= max_idle) return false;
-    if (goal.error > 0 && best.gets_there() && least >= best.seconds) return false;
-    if (goal.error > 0 && last.gets_there() && m.integrator.value < 0.25 * goal.error * goal.error) return false;
+    if (goal.error > 0 && best.reaches_goal() && least >= best.seconds) return false;
+    if (goal.error > 0 && last.reaches_goal() && m.integrator.value < 0.25 * goal.error * goal.error) return false;
     // If noise dominates or time is nearly up, a finer candidate is worse.
     return !(goal.seconds > 0 && (least > 0.5 * goal.seconds || last.error * last.error > 4 * m.integrator.value));
 }
@@ -85,7 +85,7 @@ bool may_improve(const Contender& last, int idle, const Contender& best, const G
 std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality, bool noisy) {
     std::vector<Runner> runners;
     for (const Mode& mode : modes)
-        if (error_can_be_told(mode) && mode.name != main_mode().name && (noisy || !error_is_noise(mode)) &&
+        if (has_error_bound(mode) && mode.name != main_mode().name && (noisy || !is_unbiased(mode)) &&
             (settings.fluence.orders < 2 || mode.adds_fluence))
             runners.push_back({&mode, candidates_of(mode, settings, quality)});
     return runners;
@@ -101,8 +101,8 @@ void add(Contender contender, const Goal& goal, Contest& contest) {
 }
 
 // Measures another mode's candidate on the main mode's pilot; the main mode's image takes `main_seconds`.
-Contender measured_beside(const Choice& main, double main_seconds, const Mode& mode, const Candidate& candidate,
-                          const Goal& goal) {
+Contender measure_rival(const Choice& main, double main_seconds, const Mode& mode, const Candidate& candidate,
+                        const Goal& goal) {
     Contender contender{&mode,
                         {candidate, measure(*main.pilot, mode, candidate.settings, goal.clock), has_integrator(mode)}};
     Choice& choice = contender.choice;
@@ -117,7 +117,7 @@ Contender measured_beside(const Choice& main, double main_seconds, const Mode& m
 }
 }
 
-Contender measured_alone(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+Contender sole_contender(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                          const Goal& goal, const FrameOptions& options) {
     Contender alone{&mode, choose(mode, view, snapshot, settings, goal, goal.clock(), options)};
     predict(alone, goal);
@@ -125,8 +125,8 @@ Contender measured_alone(const Mode& mode, const View& view, const Snapshot& sna
 }
 
 bool beats(const Contender& a, const Contender& b, const Goal& goal) {
-    if (a.gets_there() != b.gets_there()) return a.gets_there();
-    return a.gets_there() && goal.error > 0 ? a.seconds + a.risk < b.seconds + b.risk : a.error < b.error;
+    if (a.reaches_goal() != b.reaches_goal()) return a.reaches_goal();
+    return a.reaches_goal() && goal.error > 0 ? a.seconds + a.risk < b.seconds + b.risk : a.error < b.error;
 }
 
 Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
@@ -134,14 +134,14 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     assert(goal.error > 0 || goal.seconds > 0);
     const double start = goal.clock();
     Contest contest;
-    Contender main = measured_alone(main_mode(), view, snapshot, settings, goal, options);
+    Contender main = sole_contender(main_mode(), view, snapshot, settings, goal, options);
     const Choice first = main.choice;
     const double main_seconds = main.seconds, begun = goal.clock();
     const double known = std::min(main_seconds, longest_relied_on * (begun - start));
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : known);
-    const bool too_costly = goal.seconds == 0 && main.gets_there() && allowed < others_share * (begun - start);
+    const bool too_costly = goal.seconds == 0 && main.reaches_goal() && allowed < others_share * (begun - start);
     const bool same_light = max_component(snapshot.ambient) == 0; // path tracing shadows it, the ground truth does not
-    const bool noisy = same_light && (share == infinity || !main.gets_there() || modes.size() == 1);
+    const bool noisy = same_light && (share == infinity || !main.reaches_goal() || modes.size() == 1);
     if (std::ranges::count(modes, main.mode->name, &Mode::name)) add(std::move(main), goal, contest);
 
     std::vector<Runner> runners;
@@ -160,7 +160,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
                 runner.next = runner.candidates.size();
                 continue;
             }
-            add(measured_beside(first, main_seconds, *runner.mode, runner.candidates[runner.next++], goal), goal,
+            add(measure_rival(first, main_seconds, *runner.mode, runner.candidates[runner.next++], goal), goal,
                 contest);
             const Contender& last = contest.contenders.back();
             runner.seconds = goal.clock() - before, runner.note(last.choice.measured.integrator.bound);

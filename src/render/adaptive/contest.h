@@ -12,7 +12,7 @@ struct Contender {
     double risk = 0;    // expected extra seconds for the main mode's image, in case this one misses the target error
     double error = 0;   // predicted; if the target error is out of reach, the lowest possible
 
-    bool gets_there() const { return samples < infinity; }
+    bool reaches_goal() const { return samples < infinity; }
     // The error that samples do not remove.
     SquaredError integrator() const { return choice.has_integrator ? choice.measured.integrator : SquaredError{}; }
 };
@@ -26,7 +26,7 @@ struct Contest {
 };
 
 // A mode's own choice, without a contest.
-Contender measured_alone(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+Contender sole_contender(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                          const Goal& goal, const FrameOptions& options);
 
 // Whether `a` is better for the goal: only `a` reaches it, or `a` does so sooner (including risk), or has the lower

@@ -68,7 +68,7 @@ struct Chooser {
     const FrameOptions& options;
     std::vector<Candidate> candidates = candidates_of(mode, settings, goal.quality);
     bool systematic = has_integrator(mode);
-    Settings truth = systematic ? truth_of(goal.wanted ? *goal.wanted : settings) : settings;
+    Settings truth = systematic ? truth_settings(goal.wanted ? *goal.wanted : settings) : settings;
 
     // `work`: of the image that the pilot is for.
     std::shared_ptr<Pilot> pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready,
@@ -86,30 +86,30 @@ struct Chooser {
     // Predicted work to reach the error with the scout's candidate if that had no integration error.
     double work_ahead(const Scout& scout) const {
         if (!(goal.error > 0)) return infinity;
-        const Enough enough{goal.error * goal.error, infinity};
-        const double rays = allot(scout.layers, scout_samples, enough, 1, scout_samples).rays;
+        const AllotLimits limits{goal.error * goal.error, infinity};
+        const double rays = allot(scout.layers, scout_samples, limits, 1, scout_samples).rays;
         return scout.work() * std::max(rays / static_cast<double>(scout.stats.camera_rays), 1.0);
     }
 
-    Look look_at(const Candidate& candidate, const Scout* scout) const {
+    PilotRun start_run(const Candidate& candidate, const Scout* scout) const {
         const bool scouted = scout && scout->candidate.name == candidate.name;
-        Look look{mode, candidate.settings, scouted ? scout->prepared : nullptr};
-        if (scouted) look.prepare_seconds = scout->prepare_seconds;
-        return look;
+        PilotRun run{mode, candidate.settings, scouted ? scout->prepared : nullptr};
+        if (scouted) run.prepare_seconds = scout->prepare_seconds;
+        return run;
     }
 
     // Measures a candidate. `before` is one already measured, if any: its variance power and pace are reused.
-    Choice choice(const Candidate& candidate, Look& look, std::shared_ptr<Pilot> pilot, const Choice* before,
+    Choice choice(const Candidate& candidate, PilotRun& run, std::shared_ptr<Pilot> pilot, const Choice* before,
                   std::shared_ptr<const Scout> scout) const {
         const bool scouted = scout && scout->candidate.name == candidate.name;
-        Choice choice{candidate, measure(*pilot, look, goal.clock), systematic};
+        Choice choice{candidate, measure(*pilot, run, goal.clock), systematic};
         choice.scout = scout, choice.power = before ? before->power : 1, choice.pace = before ? before->pace : 1;
         choice.is_truth = mode.name == main_mode().name && same_settings(candidate.settings, truth);
         if (choice.is_truth) choice.measured.integrator = {};
         if (scouted) choice.pace = scout->seconds / scout_samples / std::max(choice.measured.sample_seconds, 1e-9);
         choice.measured.sample_seconds *= choice.pace;
         if (systematic && !before)
-            choice.power = spread_power(*pilot, mode, candidate.settings, *choice.measured.prepared);
+            choice.power = variance_power(*pilot, mode, candidate.settings, *choice.measured.prepared);
         choice.pilot = std::move(pilot);
         choice.scout_variance = before ? before->scout_variance : choice.measured.sample.value;
         return choice;
@@ -124,9 +124,9 @@ std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start, Squ
     std::shared_ptr<const Prepared> prepared;
     double prepare_seconds = 0;
     if (goal.seconds > 0) {
-        Pilot first = make_pilot(mode, view, snapshot, nullptr, even_chances(view, snapshot), 0, options);
+        Pilot first = make_pilot(mode, view, snapshot, nullptr, uniform_chances(view, snapshot), 0, options);
         grow(first);
-        const Measured coarse = measure(first, mode, candidates[0].settings, goal.clock);
+        const Measurement coarse = measure(first, mode, candidates[0].settings, goal.clock);
         const double left = goal.seconds - (goal.clock() - start);
         sample = coarse.sample;
         if (scout_samples * coarse.sample_seconds > scout_share * left) return nullptr;
@@ -141,15 +141,16 @@ std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start, Squ
 }
 }
 
-std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, const Snapshot& snapshot,
-                                         const Settings& settings, Goal& goal, const FrameOptions& options) {
+std::optional<OrdersError> measure_orders(const Mode& mode, const View& view, const Snapshot& snapshot,
+                                          const Settings& settings, Goal& goal, const FrameOptions& options) {
     if (!takes_fluence(mode, settings)) return {};
     const double start = goal.clock ? goal.clock() : steady_seconds();
     std::function<bool()> stop;
     if (goal.seconds > 0) stop = [&] { return goal.clock() - start > max_orders_share * goal.seconds; };
     const OrdersError orders =
         goal.orders ? *goal.orders : orders_error(mode, view, snapshot, settings, goal.error, options, stop);
-    if (goal.error > 0) goal.error = error_beside(orders.pixels, goal.error).value_or(goal.error); // none = goal missed
+    if (goal.error > 0)
+        goal.error = remaining_error(orders.pixels, goal.error).value_or(goal.error); // none = goal missed
     return orders;
 }
 
@@ -158,7 +159,7 @@ namespace {
 // the estimate itself (`hoped`).
 struct Entry {
     const Candidate& candidate;
-    Look look;
+    PilotRun run;
     Choice choice;
     double sure = infinity, hoped = infinity;
 
@@ -173,21 +174,21 @@ struct Entry {
 Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilot,
                       const std::shared_ptr<const Scout>& scout) {
     const double error = chooser.goal.error;
-    const bool bound = binds_candidates(chooser.mode, chooser.settings, chooser.goal.quality);
+    const bool bound = overrides_candidates(chooser.mode, chooser.settings, chooser.goal.quality);
     std::list<Entry> entries;
     std::optional<Choice> before; // of the finest so far
     size_t next = 0;
     while (true) {
         while (entries.empty() || (next < chooser.candidates.size() && !leaves_room(entries.back().choice, error))) {
             const Candidate& candidate = chooser.candidates[next++];
-            Look look = chooser.look_at(candidate, scout.get());
-            Choice choice = chooser.choice(candidate, look, pilot, before ? &*before : nullptr, scout);
+            PilotRun run = chooser.start_run(candidate, scout.get());
+            Choice choice = chooser.choice(candidate, run, pilot, before ? &*before : nullptr, scout);
             if (before && bound && gains_nothing(choice, *before)) {
                 next = chooser.candidates.size();
                 break;
             }
             before = choice, before->measured.prepared = nullptr;
-            entries.push_back({candidate, std::move(look), std::move(choice)});
+            entries.push_back({candidate, std::move(run), std::move(choice)});
             entries.back().weigh(error);
         }
         const Entry& best = *std::ranges::min_element(std::ranges::reverse_view(entries), {}, &Entry::sure);
@@ -195,7 +196,7 @@ Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilo
         const Choice& doubtful = (hoped.hoped == infinity ? best : hoped).choice;
         const SquaredError& integrator = doubtful.measured.integrator;
         double again = pilot->cost.work;
-        for (const Entry& entry : entries) again += entry.look.cost.work;
+        for (const Entry& entry : entries) again += entry.run.cost.work;
         const auto to_goal = [&](double squared) { return doubtful.work_to(error, squared); };
         if (!chooser.systematic || !pilot->can_grow(integrator.by_noise) ||
             !worth_seeing(integrator, *pilot, best.sure, again, to_goal))
@@ -204,7 +205,7 @@ Choice choose_by_work(const Chooser& chooser, const std::shared_ptr<Pilot>& pilo
         grow(*pilot, integrator.by_noise);
         for (Entry& entry : entries) {
             if (entry.hoped > least) continue; // cannot win as long as the best candidate stays as good
-            entry.choice = chooser.choice(entry.candidate, entry.look, pilot, &*before, scout);
+            entry.choice = chooser.choice(entry.candidate, entry.run, pilot, &*before, scout);
             entry.weigh(error);
         }
     }
@@ -219,7 +220,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
     const std::shared_ptr<const Scout> scout = scout_for(chooser, start, sample);
     const double piloting = spent();
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
-        scout ? chances_in(scout->layers) : even_chances(view, snapshot), 0, nullptr,
+        scout ? chances_in(scout->layers) : uniform_chances(view, snapshot), 0, nullptr,
         [&] { return spent() - piloting > truth_share * goal.seconds; }, scout ? chooser.work_ahead(*scout) : infinity);
     pilot->stop = {}; // it captures locals of this call
     if (goal.seconds == 0) return choose_by_work(chooser, pilot, scout);
@@ -227,8 +228,8 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
     std::optional<Choice> best;
     for (const Candidate& candidate : chooser.candidates) {
         const double begun = spent();
-        Look look = chooser.look_at(candidate, scout.get());
-        Choice next = chooser.choice(candidate, look, pilot, best ? &*best : nullptr, scout);
+        PilotRun run = chooser.start_run(candidate, scout.get());
+        Choice next = chooser.choice(candidate, run, pilot, best ? &*best : nullptr, scout);
         if (!scout && sample.value > 0) next.measured.sample = sample;
         const double now = spent();
         const auto samples = [&](const Choice& choice) {
@@ -253,8 +254,8 @@ Choice finer_than(const Choice& choice, const Chooser& chooser, const std::share
     Choice result = choice;
     auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
     while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
-        Look look = chooser.look_at(*next, choice.scout.get());
-        Choice finer = chooser.choice(*next, look, pilot, &choice, choice.scout);
+        PilotRun run = chooser.start_run(*next, choice.scout.get());
+        Choice finer = chooser.choice(*next, run, pilot, &choice, choice.scout);
         const bool room = leaves_room(finer, error);
         const double work = finer.work_to(error);
         if (work < least || (least == infinity && room)) least = work, result = std::move(finer);
@@ -264,18 +265,18 @@ Choice finer_than(const Choice& choice, const Chooser& chooser, const std::share
 }
 }
 
-Choice checked(const Choice& choice, const CheckedPicture& picture, double until, const Mode& mode, const View& view,
-               const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t salt,
-               const FrameOptions& options) {
+Choice check_choice(const Choice& choice, const CheckedImage& picture, double until, const Mode& mode, const View& view,
+                    const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t salt,
+                    const FrameOptions& options) {
     if (!choice.has_integrator || choice.is_truth) return choice;
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
-    const bool rivals = has_rivals(choice, mode), is_bound = binds_candidates(mode, settings, goal.quality);
+    const bool rivals = from_contest(choice, mode), is_bound = overrides_candidates(mode, settings, goal.quality);
     const double squared_goal = goal.error * goal.error, squared_noise = picture.noise.bound * picture.noise.bound;
     // If the integrator alone misses the goal, measure by how much on all the tiles of a drawing, however few samples
     // the image has.
     const bool hopeless = choice.measured.integrator.bound >= squared_goal;
     const auto chances = [&] {
-        if (picture.layers.variance.empty()) return even_chances(view, snapshot);
+        if (picture.layers.variance.empty()) return uniform_chances(view, snapshot);
         return rivals ? chances_between(picture.layers, choice.scout->layers) : chances_in(picture.layers);
     };
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
@@ -283,9 +284,9 @@ Choice checked(const Choice& choice, const CheckedPicture& picture, double until
         hopeless ? double{infinity} : picture.samples * choice.measured.sample_work);
     pilot->stop = {}; // it captures locals of this call
     Choice result = choice;
-    Look look{mode, choice.candidate.settings, choice.measured.prepared};
+    PilotRun run{mode, choice.candidate.settings, choice.measured.prepared};
     SquaredError& integrator = result.measured.integrator;
-    const Measured first = measure(*pilot, look, goal.clock);
+    const Measurement first = measure(*pilot, run, goal.clock);
     integrator = first.integrator;
 
     const double begun = pilot->cost.work, work = picture.samples * first.sample_work;
@@ -309,10 +310,10 @@ Choice checked(const Choice& choice, const CheckedPicture& picture, double until
     const auto is_in_time = [&] { return goal.seconds == 0 || goal.clock() + pilot->cost.seconds < until; };
     while (squared_noise < squared_goal && is_undecided(integrator, squared_goal - squared_noise) && is_in_time() &&
            see_more())
-        integrator = measure(*pilot, look, goal.clock).integrator;
+        integrator = measure(*pilot, run, goal.clock).integrator;
 
     const bool missed = integrator.bound + squared_noise > squared_goal;
-    if (!missed || goal.error == 0 || goal.seconds > 0 || is_bound || !picture.may_begin_anew) return result;
+    if (!missed || goal.error == 0 || goal.seconds > 0 || is_bound || !picture.may_restart) return result;
     if (rivals) return result; // the main mode is likely to be faster than a finer candidate
     return finer_than(result, chooser, pilot, std::min(work_left(integrator.bound), goal.other_work));
 }

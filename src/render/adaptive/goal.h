@@ -20,17 +20,17 @@ struct Goal {
 inline constexpr uint32_t max_checks = 3;
 
 // A finished image to check, or a pilot image of one still to be rendered.
-struct CheckedPicture {
-    const Layers& layers;       // show where errors are likely
-    const Noise& noise;         // of the image
-    double samples = 0;         // per pixel, that give that noise
-    double done = 0;            // samples per pixel so far
-    bool may_begin_anew = true; // whether a finer candidate may start over
+struct CheckedImage {
+    const Layers& layers;    // show where errors are likely
+    const Noise& noise;      // of the image
+    double samples = 0;      // per pixel, that give that noise
+    double done = 0;         // samples per pixel so far
+    bool may_restart = true; // whether a finer candidate may start over
 };
 
 // Error of multiple scattering from a grid, if it is part of the image; reduces goal.error to what that leaves.
-std::optional<OrdersError> orders_beside(const Mode& mode, const View& view, const Snapshot& snapshot,
-                                         const Settings& settings, Goal& goal, const FrameOptions& options);
+std::optional<OrdersError> measure_orders(const Mode& mode, const View& view, const Snapshot& snapshot,
+                                          const Settings& settings, Goal& goal, const FrameOptions& options);
 
 // With a target error: the candidate that is likely to reach it with the least work, up to the first whose bound leaves
 // enough for noise; or the finest; if the settings keep candidates from getting finer, only those before the first that
@@ -43,7 +43,7 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
 // independent of the tiles the candidate was chosen by. If that error and the image's noise together exceed the goal,
 // may return a finer candidate: one that takes less work than more samples would. With a time limit, few tiles are
 // measured after `until`, by the goal's clock.
-Choice checked(const Choice& choice, const CheckedPicture& picture, double until, const Mode& mode, const View& view,
-               const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t salt,
-               const FrameOptions& options);
+Choice check_choice(const Choice& choice, const CheckedImage& picture, double until, const Mode& mode, const View& view,
+                    const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t salt,
+                    const FrameOptions& options);
 }

@@ -93,12 +93,12 @@ struct Compared {
     Traced mode, truth, mode_once, truth_once;
 };
 
-struct Light {
+struct PixelLight {
     std::array<vec3, layer_count> values{};
     bool finite = true;
 };
 
-using TileLight = std::array<Light, tile_side * tile_side / 4>;
+using TileLight = std::array<PixelLight, tile_side * tile_side / 4>;
 
 TileLight light_of(const Traced& traced, const View& view, std::span<const ivec2> pixels) {
     PixelSample samples[std::tuple_size_v<TileLight>];
@@ -259,7 +259,7 @@ OrdersError orders_error(const Mode& mode, const View& given, const Snapshot& sn
     return result;
 }
 
-std::optional<double> error_beside(const Noise& other, double error) {
+std::optional<double> remaining_error(const Noise& other, double error) {
     constexpr double least = 0.3; // of the error: a smaller remainder takes more than ten times the samples
     const double left = error * error - other.bound * other.bound;
     if (left >= least * least * error * error) return std::sqrt(left);

@@ -15,7 +15,7 @@ OrdersError orders_error(const Mode& mode, const View& view, const Snapshot& sna
                          double error, const FrameOptions& options, const std::function<bool()>& stop = {});
 
 // What a target error leaves for noise and integrator beside another error; none if that is too little.
-std::optional<double> error_beside(const Noise& other, double error);
+std::optional<double> remaining_error(const Noise& other, double error);
 
 namespace limitation {
 inline constexpr LimitationKind approximate_orders{

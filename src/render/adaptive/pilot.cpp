@@ -34,7 +34,7 @@ Sums sums_of(std::span<const vec3> truth, std::span<const vec3> own, size_t laye
 SquaredError squared_error(std::span<const Sums> sums, std::span<const DrawnTile> tiles, Product product) {
     double products = 0, mean = 0, count = 0, largest = 0;
     for (size_t i = 0; i < sums.size(); ++i) {
-        const double weight = tiles[i].stands_for;
+        const double weight = tiles[i].weight;
         products += weight * sums[i].products[product], mean += weight * sums[i].mean, count += weight * sums[i].count;
         largest = std::max(largest, sums[i].squares[product]);
     }
@@ -45,7 +45,7 @@ SquaredError squared_error(std::span<const Sums> sums, std::span<const DrawnTile
     const double per_product = count / (mean * mean), value = products * per_product;
     double variance = 0, third = 0, noise = 0;
     for (size_t i = 0; i < sums.size(); ++i) {
-        const double weight = tiles[i].stands_for, chance = tiles[i].chance;
+        const double weight = tiles[i].weight, chance = tiles[i].chance;
         const double change = weight * (per_product * sums[i].products[product] - 2 * value * sums[i].mean / mean +
                                         value * sums[i].count / count);
         variance += (1 - chance) * change * change, third += (1 - chance) * change * change * change;
@@ -127,7 +127,7 @@ Cost follow(FrameTracer tracer, const Pilot& pilot, int pass, size_t begin, size
 void keep_first(size_t count, Pilot& pilot) {
     const double share = static_cast<double>(count) / static_cast<double>(pilot.tiles.size());
     pilot.tiles.resize(count);
-    for (DrawnTile& tile : pilot.tiles) tile.stands_for /= share, tile.chance *= share;
+    for (DrawnTile& tile : pilot.tiles) tile.weight /= share, tile.chance *= share;
 }
 
 // One pass over the first tiles: as many as time and work allow.
@@ -224,7 +224,7 @@ void grow(Pilot& pilot, bool by_noise) {
         pilot.passes *= 2;
     } else {
         const double before = pilot.drawings++, now = pilot.drawings;
-        for (DrawnTile& tile : pilot.tiles) tile.stands_for *= before / now;
+        for (DrawnTile& tile : pilot.tiles) tile.weight *= before / now;
         const uint32_t seed = hash(pilot.view.seed, static_cast<uint32_t>(pilot.drawings));
         std::vector<DrawnTile> drawn = draw_tiles(pilot.chances, drawing_tiles, seed);
         std::ranges::sort(drawn, {}, [&](const DrawnTile& tile) {
@@ -232,11 +232,11 @@ void grow(Pilot& pilot, bool by_noise) {
         });
         for (DrawnTile tile : drawn) {
             const auto same = std::ranges::find(pilot.tiles, tile.corner, &DrawnTile::corner);
-            tile.stands_for /= now;
+            tile.weight /= now;
             if (same == pilot.tiles.end())
                 pilot.tiles.push_back(tile);
             else
-                same->stands_for += tile.stands_for;
+                same->weight += tile.weight;
         }
     }
     if (!pilot.truth_settings) return;
@@ -248,34 +248,34 @@ void grow(Pilot& pilot, bool by_noise) {
         pilot.cost += follow_rest(tracer, pilot, seen, passes, pilot.truth);
 }
 
-Measured measure(const Pilot& pilot, Look& look, const Seconds& clock) {
+Measurement measure(const Pilot& pilot, PilotRun& run, const Seconds& clock) {
     const double start = clock();
-    if (!look.prepared) {
-        look.prepared = prepare(pilot, look.mode, look.of(pilot), look.settings);
-        look.prepare_seconds = clock() - start;
+    if (!run.prepared) {
+        run.prepared = prepare(pilot, run.mode, run.of(pilot), run.settings);
+        run.prepare_seconds = clock() - start;
     }
     const double prepared = clock();
-    const View view = view_for(look.mode, pilot);
-    const Cost cost = follow_rest(frame_tracer(look.mode, view, look.of(pilot), look.settings, *look.prepared), pilot,
-                                  look.values.size() / pilot_values, look.passes, look.values);
-    look.passes = pilot.passes, look.cost += Cost{clock() - prepared, cost.work};
-    const std::vector<vec3>& truth = pilot.truth.empty() ? look.values : pilot.truth;
-    Measured result;
-    result.integrator = error_of(pilot, truth, look.values, of_integrator);
-    result.sample = error_of(pilot, truth, look.values, of_sample);
+    const View view = view_for(run.mode, pilot);
+    const Cost cost = follow_rest(frame_tracer(run.mode, view, run.of(pilot), run.settings, *run.prepared), pilot,
+                                  run.values.size() / pilot_values, run.passes, run.values);
+    run.passes = pilot.passes, run.cost += Cost{clock() - prepared, cost.work};
+    const std::vector<vec3>& truth = pilot.truth.empty() ? run.values : pilot.truth;
+    Measurement result;
+    result.integrator = error_of(pilot, truth, run.values, of_integrator);
+    result.sample = error_of(pilot, truth, run.values, of_sample);
     result.sample.value *= pilot.passes, result.sample.bound *= pilot.passes; // they are those of means over the passes
-    result.prepare_seconds = look.prepare_seconds, result.prepared = look.prepared;
+    result.prepare_seconds = run.prepare_seconds, result.prepared = run.prepared;
     const double scale = pilot.pixels() / pilot.samples();
-    result.sample_seconds = scale * look.cost.seconds, result.sample_work = scale * look.cost.work;
+    result.sample_seconds = scale * run.cost.seconds, result.sample_work = scale * run.cost.work;
     return result;
 }
 
-Measured measure(const Pilot& pilot, const Mode& mode, const Settings& settings, const Seconds& clock) {
-    Look look{mode, settings};
-    return measure(pilot, look, clock);
+Measurement measure(const Pilot& pilot, const Mode& mode, const Settings& settings, const Seconds& clock) {
+    PilotRun run{mode, settings};
+    return measure(pilot, run, clock);
 }
 
-double spread_power(const Pilot& pilot, const Mode& mode, const Settings& settings, const Prepared& prepared) {
+double variance_power(const Pilot& pilot, const Mode& mode, const Settings& settings, const Prepared& prepared) {
     constexpr int samples = 8;
     View view = view_for(mode, pilot);
     const auto variance_of_means = [&](int of) {

@@ -27,7 +27,7 @@ struct SquaredError {
     bool by_noise = false; // the bound is due to the noise of pixels rather than to few tiles
 };
 
-struct Measured {
+struct Measurement {
     SquaredError integrator;                        // in the limit of infinitely many samples
     SquaredError sample;                            // variance of one sample
     double prepare_seconds = 0, sample_seconds = 0; // per sample of all the image's pixels
@@ -80,7 +80,7 @@ Pilot make_pilot(const Mode& mode, const View& view, const Snapshot& snapshot, c
 void grow(Pilot& pilot, bool by_noise = false);
 
 // A candidate's values on the tiles of a pilot; grows with it.
-struct Look {
+struct PilotRun {
     const Mode& mode;
     const Settings& settings;
     std::shared_ptr<const Prepared> prepared{};
@@ -94,12 +94,12 @@ struct Look {
 };
 
 // Measures a candidate: traces the tiles and passes it lacks, and prepares the mode unless that is done already.
-Measured measure(const Pilot& pilot, Look& look, const Seconds& clock);
-Measured measure(const Pilot& pilot, const Mode& mode, const Settings& settings, const Seconds& clock);
+Measurement measure(const Pilot& pilot, PilotRun& run, const Seconds& clock);
+Measurement measure(const Pilot& pilot, const Mode& mode, const Settings& settings, const Seconds& clock);
 
 // Exponent, 1 to 2, by which the variance of a pixel's mean falls with the number of samples: they are better
 // distributed than independent ones. Measured on means of eight.
-double spread_power(const Pilot& pilot, const Mode& mode, const Settings& settings, const Prepared& prepared);
+double variance_power(const Pilot& pilot, const Mode& mode, const Settings& settings, const Prepared& prepared);
 
 enum Product { of_integrator, of_sample, product_count };
 

@@ -35,7 +35,7 @@ std::shared_ptr<const TileFactors> counts_of(const Allotment& allotment, int gro
 
 // The frame's view with the same number of samples in all pixels.
 View even_frame(const View& view) {
-    View even = even_view(view, 1, 1);
+    View even = uniform_view(view, 1, 1);
     even.leaves = 0, even.allotted = nullptr;
     return even;
 }
@@ -48,7 +48,7 @@ struct PilotImage {
 // Rendered with the candidate, if there is one.
 PilotImage pilot_image(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                        const std::optional<Choice>& choice, const FrameOptions& options) {
-    View even = even_view(even_frame(view), pilot_samples, pilot_samples);
+    View even = uniform_view(even_frame(view), pilot_samples, pilot_samples);
     even.seed = hash(view.seed, use_pilot);
     FrameOptions prepared = options;
     if (choice) prepared.prepared = choice->measured.prepared;
@@ -74,7 +74,7 @@ std::optional<Noise> moments_of_frame(const Mode& mode, const View& view, const 
     const View even = even_frame(view);
     if (!prepared)
         prepared = std::make_shared<const Prepared>(prepare_frame(mode, even, snapshot, settings, options.history));
-    const TileChances chances = image.variance.empty() ? even_chances(even, snapshot) : chances_in(image);
+    const TileChances chances = image.variance.empty() ? uniform_chances(even, snapshot) : chances_in(image);
     const SquaredError squared =
         moments_error(mode, even, snapshot, settings, *prepared, chances, error, false, options);
     return Noise{std::sqrt(squared.value), std::sqrt(squared.bound)};
@@ -93,7 +93,7 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
     Goal goal = asked;
     if (!goal.clock) goal.clock = steady_seconds;
     PlannedSamples planned{settings, nullptr, {goal.error, {}, false, {}}};
-    planned.error.orders = orders_beside(mode, view, snapshot, settings, goal, options);
+    planned.error.orders = measure_orders(mode, view, snapshot, settings, goal, options);
 
     std::optional<Choice> choice;
     if (has_integrator(mode))
@@ -103,13 +103,13 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
         moments_of_frame(mode, view, snapshot, choice ? choice->candidate.settings : settings,
                          choice ? choice->measured.prepared : nullptr, pilot.layers, goal.error, options);
     if (planned.error.moments)
-        goal.error = error_beside(*planned.error.moments, goal.error).value_or(goal.error); // none = goal missed
+        goal.error = remaining_error(*planned.error.moments, goal.error).value_or(goal.error); // none = goal missed
     for (uint32_t check = 1; choice && check <= max_checks; ++check) {
         const double bound = noise_target(*choice, goal.error), work = choice->work_to(goal.error);
         const Noise noise{bound, bound, bound};
         const double samples = work < infinity ? work / choice->measured.sample_work : pilot_samples;
-        const Choice after = checked(*choice, {pilot.layers, noise, samples, 0}, infinity, mode, even_frame(view),
-                                     snapshot, settings, goal, image_check + check, options);
+        const Choice after = check_choice(*choice, {pilot.layers, noise, samples, 0}, infinity, mode, even_frame(view),
+                                          snapshot, settings, goal, image_check + check, options);
         const bool finer = after.candidate.name != choice->candidate.name;
         choice = after;
         if (!finer) break;
@@ -123,8 +123,8 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
     // Noise falls fastest at first: use the measured power for half of the way and 1 / n for the rest.
     const double power = choice ? (1 + std::clamp(choice->power, 1.0, 1.5)) / 2 : 1;
     const double pixels = static_cast<double>(layers.color.pixels.size());
-    const Enough enough{infinity, max_target_samples * pixels, target * target / 1.05};
-    planned.counts = counts_of(allot(layers, pilot_samples, enough, power, view.batches), view.batches);
+    const AllotLimits limits{infinity, max_target_samples * pixels, target * target / 1.05};
+    planned.counts = counts_of(allot(layers, pilot_samples, limits, power, view.batches), view.batches);
     planned.samples = view.batches * mean_of(*planned.counts);
     planned.seconds = stats.render_seconds / pilot_samples * planned.samples;
     return planned;
@@ -138,8 +138,8 @@ Integrator measured_integrator(const Choice& choice, double target, const Mode& 
     Goal goal{target, infinity, Quality::preview};
     goal.clock = steady_seconds;
     const Settings& settings = choice.candidate.settings;
-    const Choice after = checked(choice, {image, noise, samples, samples}, infinity, mode, even_frame(view), snapshot,
-                                 settings, goal, salt, options);
+    const Choice after = check_choice(choice, {image, noise, samples, samples}, infinity, mode, even_frame(view),
+                                      snapshot, settings, goal, salt, options);
     const SquaredError& error = after.measured.integrator;
     return {{std::sqrt(error.value), std::sqrt(error.bound)}, choice.candidate.name, settings};
 }
@@ -153,8 +153,8 @@ Choice choice_of(const std::string& candidate, const Settings& settings, const N
 }
 }
 
-PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                          const FrameOptions& given) {
+PlannedError systematic_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                              const FrameOptions& given) {
     const FrameOptions options = without_report(given);
     PlannedError error;
     if (takes_fluence(mode, settings)) error.orders = orders_error(mode, view, snapshot, settings, 0, options);
@@ -164,7 +164,7 @@ PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& sn
     }
     Layers image; // shows where errors are likely; if it would take long to render, tiles are drawn evenly
     if (static_cast<int64_t>(view.size.x) * view.size.y <= max_shown_pixels) {
-        View few = even_view(even_frame(view), scout_samples, scout_samples);
+        View few = uniform_view(even_frame(view), scout_samples, scout_samples);
         few.seed = hash(view.seed, use_pilot);
         FrameStats stats;
         image = render_frame(mode, few, snapshot, settings, options, stats);
@@ -175,8 +175,8 @@ PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& sn
     return error;
 }
 
-void judge_planned(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
-                   const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats) {
+void add_planned_error(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
+                       const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats) {
     if (!stats.noise) return;
     if (planned.orders) stats.orders = planned.orders;
     if (planned.moments) stats.moments_error = planned.moments;
@@ -188,7 +188,7 @@ void judge_planned(const PlannedError& planned, const Mode& mode, const View& vi
                             image, *stats.noise, stats.samples, image_check, without_report(options));
 }
 
-double groups_lacking(const PlannedError& planned, const FrameStats& stats, int groups) {
+double missing_groups(const PlannedError& planned, const FrameStats& stats, int groups) {
     if (planned.target == 0 || !stats.noise || stats.error()->bound <= planned.target) return 0;
     const double all = stats.error()->bound, noise = stats.noise->bound;
     const double left = planned.target * planned.target - (all * all - noise * noise);

@@ -19,15 +19,15 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
                             const Goal& goal, const FrameOptions& options);
 
 // The error of a frame that samples do not remove, for settings that were not chosen by a target.
-PlannedError shared_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                          const FrameOptions& options);
+PlannedError systematic_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                              const FrameOptions& options);
 
 // Adds to the statistics of a finished image what is known of its error besides noise. With a target error, the
 // integrator's is measured again, on tiles where the image shows that errors are likely; independent of what the
 // candidate was chosen by, and the same for the same image.
-void judge_planned(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
-                   const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats);
+void add_planned_error(const PlannedError& planned, const Mode& mode, const View& view, const Snapshot& snapshot,
+                       const Settings& settings, const Layers& image, const FrameOptions& options, FrameStats& stats);
 
 // How many more groups a target needs; 0 if it is reached, infinite if groups cannot reach it.
-double groups_lacking(const PlannedError& planned, const FrameStats& stats, int groups);
+double missing_groups(const PlannedError& planned, const FrameStats& stats, int groups);
 }

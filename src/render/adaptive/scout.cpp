@@ -3,7 +3,7 @@
 #include "trace/transmittance/light_depth.h"
 
 namespace tyndall {
-View even_view(View view, int samples, int batches) {
+View uniform_view(View view, int samples, int batches) {
     view.pixel_samples = samples, view.batches = batches;
     view.lamp_samples = view.edge_samples = 1, view.allotted = nullptr;
     return view;
@@ -14,7 +14,7 @@ std::shared_ptr<const Scout> make_scout(const Mode& mode, const View& view, cons
                                         std::shared_ptr<const Prepared> prepared) {
     auto scout = std::make_shared<Scout>();
     scout->mode = &mode, scout->candidate = candidate, scout->seed = view.seed;
-    const View even = even_view(view, scout_samples, scout_samples);
+    const View even = uniform_view(view, scout_samples, scout_samples);
     FrameOptions own = options;
     own.progress = {};
     const double start = clock();

@@ -25,5 +25,5 @@ std::shared_ptr<const Scout> make_scout(const Mode& mode, const View& view, cons
                                         std::shared_ptr<const Prepared> prepared = {});
 
 // The view with the same number of samples in all pixels, also around lamps and at edges.
-View even_view(View view, int samples, int batches);
+View uniform_view(View view, int samples, int batches);
 }

@@ -15,37 +15,37 @@ constexpr uint32_t moments_salt = 0x5b17u; // independent tiles
 struct Moments {
     const View& view;
     const Snapshot& snapshot;
-    std::vector<Look> looks;
+    std::vector<PilotRun> runs;
 };
 
-Moments looks_at(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
-                 const Prepared& prepared) {
+Moments start_runs(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+                   const Prepared& prepared) {
     Moments moments{view, snapshot, {}};
     for (size_t k = 0; k < snapshot.moments->size(); ++k) {
         const std::shared_ptr<const Prepared> borrowed(std::shared_ptr<void>(), &prepared.moments[k]);
-        moments.looks.push_back({mode, settings, borrowed, &(*snapshot.moments)[k]});
+        moments.runs.push_back({mode, settings, borrowed, &(*snapshot.moments)[k]});
     }
     return moments;
 }
 
 // Traces the tiles and passes that a moment's look lacks.
-void follow(const Pilot& pilot, size_t moment, Look& look, const View& view) {
+void follow(const Pilot& pilot, size_t moment, PilotRun& run, const View& view) {
     Pilot still = pilot;
     still.view.camera = view.shutter->cameras[moment], still.view.shutter = nullptr;
-    measure(still, look, steady_seconds);
+    measure(still, run, steady_seconds);
 }
 
 SquaredError compare(const Pilot& pilot, Moments& moments) {
-    const size_t count = moments.looks.size(), values = pilot.tiles.size() * pilot_values;
+    const size_t count = moments.runs.size(), values = pilot.tiles.size() * pilot_values;
     std::vector<vec3> mean(values, vec3(0)), difference(values, vec3(0));
     float sum_of_signs = 0;
     for (size_t k = 0; k < count; ++k) {
-        follow(pilot, k, moments.looks[k], moments.view);
+        follow(pilot, k, moments.runs[k], moments.view);
         const float share = 1 / static_cast<float>(count), sign = std::popcount(k) % 2 ? -1.0f : 1.0f;
         sum_of_signs += sign;
         for (size_t i = 0; i < values; ++i) {
-            mean[i] += share * moments.looks[k].values[i];
-            difference[i] += share * sign * moments.looks[k].values[i];
+            mean[i] += share * moments.runs[k].values[i];
+            difference[i] += share * sign * moments.runs[k].values[i];
         }
     }
     for (size_t i = 0; i < values; ++i)
@@ -61,12 +61,12 @@ SquaredError moments_error(const Mode& mode, const View& view, const Snapshot& s
     constexpr size_t few_moments = 32; // with more, the error is small and every tile is traced through all of them
     constexpr int many_passes = 8;     // each of them traces every moment
     Pilot pilot = make_pilot(mode, view, snapshot, nullptr, chances, moments_salt, options);
-    Moments moments = looks_at(mode, view, snapshot, settings, prepared);
+    Moments moments = start_runs(mode, view, snapshot, settings, prepared);
     while (true) {
         const SquaredError found = compare(pilot, moments);
         const double enough = std::max(2 * found.value, small * small * error * error);
         const bool enough_passes = found.by_noise && pilot.passes >= many_passes;
-        if (once || moments.looks.size() > few_moments || found.bound <= enough || enough_passes ||
+        if (once || moments.runs.size() > few_moments || found.bound <= enough || enough_passes ||
             !pilot.can_grow(found.by_noise))
             return found;
         grow(pilot, found.by_noise);

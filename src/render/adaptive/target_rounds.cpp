@@ -33,7 +33,7 @@ bool is_out_of_reach(const Choice& choice, double error) {
 
 int first_round(TargetRounds& rounds) {
     if (!rounds.choice) return std::min(batched_samples(rounds.view.pixel_samples), max_target_samples);
-    const Measured& measured = rounds.choice->measured;
+    const Measurement& measured = rounds.choice->measured;
     int samples = max_target_samples;
     if (rounds.goal.error > 0) {
         const double ratio = measured.sample.value / std::pow(rounds.noise_target(), 2);
@@ -68,17 +68,17 @@ bool begin_allotment(TargetRounds& rounds, const Layers& layers, FrameStats& sta
     if (rounds.freedom == 0 || !(noise.error > 0) || !std::isfinite(noise.bound)) return false;
     const double unit_rays = rounds.allotment ? rounds.allotment->rays : pixel_count(rounds.view);
     const double ray_seconds = rounds.work_seconds / unit_rays;
-    Enough enough{0, max_target_samples * pixel_count(rounds.view)};
+    AllotLimits limits{0, max_target_samples * pixel_count(rounds.view)};
     if (rounds.goal.error > 0)
-        enough.squared_error = infinity, enough.squared_bound = std::pow(rounds.noise_target(), 2) / 1.05;
-    if (rounds.goal.seconds > 0) enough.rays = std::min(enough.rays, std::max(0.9 * rounds.left() / ray_seconds, 0.0));
+        limits.squared_error = infinity, limits.squared_bound = std::pow(rounds.noise_target(), 2) / 1.05;
+    if (rounds.goal.seconds > 0) limits.rays = std::min(limits.rays, std::max(0.9 * rounds.left() / ray_seconds, 0.0));
     const Image<float> taken = rounds.samples_taken(layers);
-    const Allotment allotment = allot(layers, taken, enough, rounds.power(), rounds.unit());
+    const Allotment allotment = allot(layers, taken, limits, rounds.power(), rounds.unit());
 
     // Work for the same result by continuing with independent rounds instead of starting over.
     const double as_it_goes = work_as_it_goes(rounds, allotment, noise) * unit_rays;
     const double gain = rounds.allotment ? 2 : 1.2;
-    if (!(gain * allotment.rays < as_it_goes) || allotment.rays > 1.1 * enough.rays) return false;
+    if (!(gain * allotment.rays < as_it_goes) || allotment.rays > 1.1 * limits.rays) return false;
     rounds.work_seconds = ray_seconds * allotment.rays;
     // Noise may fall faster than few samples suggest: if many more are to come, render a part of them first to find
     // out.

@@ -28,26 +28,26 @@ struct TargetRounds {
     double check_seconds = 0; // predicted for the check of the image
 
     double left() const { return goal.seconds - check_seconds - (goal.clock() - start); }
-    int max_batches() const { return error_is_noise(mode) || view.batches > 1 ? noise_batches : 2; }
+    int max_batches() const { return is_unbiased(mode) || view.batches > 1 ? noise_batches : 2; }
     int fewest() const { return view.batches > 1 ? 2 : 1; }
     // Samples are allotted in multiples of this number.
-    int unit() const { return view.batches > 1 ? 8 : error_is_noise(mode) ? 4 : 2; }
+    int unit() const { return view.batches > 1 ? 8 : is_unbiased(mode) ? 4 : 2; }
     // Whether parts of an allotment continue the same two batches, in which noise falls fastest: only if many pixels
     // together show the noise from the difference of two.
-    bool goes_on() const {
+    bool continues() const {
         constexpr double many_pixels = 256;
-        return allotment && view.batches == 1 && !error_is_noise(mode) && allotment->pixels >= many_pixels;
+        return allotment && view.batches == 1 && !is_unbiased(mode) && allotment->pixels >= many_pixels;
     }
     double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
-    double power_of_parts() const { return goes_on() ? power() : 1; } // independent ones add up as 1 / n
+    double power_of_parts() const { return continues() ? power() : 1; } // independent ones add up as 1 / n
 
     Image<float> samples_taken(const Layers& layers) const {
-        return allotment ? samples_in(*allotment, done, unit(), goes_on()) : samples_alike(layers, done);
+        return allotment ? samples_in(*allotment, done, unit(), continues()) : uniform_samples(layers, done);
     }
 
     // Whether the integrator is checked after the first round: a technique that was preferred to the main one for its
     // speed loses all of it if it misses the target.
-    bool checks_early() const { return choice && !is_timed && has_rivals(*choice, mode); }
+    bool checks_early() const { return choice && !is_timed && from_contest(*choice, mode); }
 
     double noise_target() const { return choice ? tyndall::noise_target(*choice, goal.error) : goal.error; }
 

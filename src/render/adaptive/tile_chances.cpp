@@ -53,7 +53,7 @@ std::vector<size_t> tiles_with_lamps(const TileChances& tiles, const View& view,
 }
 }
 
-TileChances even_chances(const View& view, const Snapshot& snapshot) {
+TileChances uniform_chances(const View& view, const Snapshot& snapshot) {
     const bool cropped = view.crop_low != view.crop_high;
     TileChances tiles = cropped ? tiles_between(view.crop_low, view.crop_high) : tiles_between(ivec2(0), view.size);
     const std::vector<size_t> lit = tiles_with_lamps(tiles, view, snapshot);

@@ -17,12 +17,12 @@ struct TileChances {
 // being drawn (Horvitz & Thompson 1952).
 struct DrawnTile {
     ivec2 corner{0}; // pixels
-    double chance = 1, stands_for = 1;
+    double chance = 1, weight = 1;
 };
 
 // Equal chances, except that tiles with visible lamps, where noise is largest, are certain to be drawn: up to half of a
 // drawing.
-TileChances even_chances(const View& view, const Snapshot& snapshot);
+TileChances uniform_chances(const View& view, const Snapshot& snapshot);
 
 // Chances from what an image shows: a quarter each for noise, squared color, squared inscatter, and equal chances. An
 // integrator's errors are proportional to the light, so their squares are proportional to its square.

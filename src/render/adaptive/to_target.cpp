@@ -37,7 +37,7 @@ Choice choice_for(const TargetRounds& rounds, const Snapshot& snapshot, const Se
 int batched_samples(int samples) { return (samples + noise_batches - 1) / noise_batches * noise_batches; }
 
 void check_target(const Mode& mode, std::string_view option) {
-    if (error_can_be_told(mode)) return;
+    if (has_error_bound(mode)) return;
     fail(ExitCode::usage, std::string(option),
          "mode '" + std::string(mode.name) + "' is artistic: it has no error bound; --mode auto picks a mode with one");
 }
@@ -53,7 +53,7 @@ struct Rendering {
 };
 
 // Error of motion blur from the shutter's moments, if any; reduces goal.error to what that leaves.
-std::optional<Noise> moments_beside(TargetRounds& rounds, Rendering& rendering) {
+std::optional<Noise> measure_moments(TargetRounds& rounds, Rendering& rendering) {
     const auto& [mode, snapshot, options, settings, prepared] = rendering;
     if (!has_moments(rounds.view, snapshot)) return {};
     if (!prepared)
@@ -62,10 +62,10 @@ std::optional<Noise> moments_beside(TargetRounds& rounds, Rendering& rendering) 
     const std::shared_ptr<const Scout> scout = rounds.choice ? rounds.choice->scout : nullptr;
     Goal& goal = rounds.goal;
     const SquaredError error = moments_error(mode, rounds.view, snapshot, settings, *rendering.prepared,
-                                             scout ? chances_in(scout->layers) : even_chances(rounds.view, snapshot),
+                                             scout ? chances_in(scout->layers) : uniform_chances(rounds.view, snapshot),
                                              goal.error, goal.seconds > 0, options);
     const Noise moments{std::sqrt(error.value), std::sqrt(error.bound)};
-    if (goal.error > 0) goal.error = error_beside(moments, goal.error).value_or(goal.error); // none = goal missed
+    if (goal.error > 0) goal.error = remaining_error(moments, goal.error).value_or(goal.error); // none = goal missed
     return moments;
 }
 
@@ -118,7 +118,7 @@ double render_rounds(TargetRounds& rounds, const Rendering& rendering, double wo
         std::optional<AllottedPart> part;
         if (rounds.done == 0) rounds.sequence = round;
         if (rounds.allotment)
-            part = part_of(*rounds.allotment, rounds.done, rounds.done + work, rounds.unit(), rounds.goes_on());
+            part = allotted_part(*rounds.allotment, rounds.done, rounds.done + work, rounds.unit(), rounds.continues());
         const View view = rounds.round_view(work, round, part ? &*part : nullptr);
         const double reached = std::max(begun, std::min(1.0, (rounds.done + work) / rounds.expected));
         FrameOptions options = rendering.options;
@@ -153,22 +153,22 @@ double render_rounds(TargetRounds& rounds, const Rendering& rendering, double wo
 }
 
 // What is checked: the finished image, or one that its first rounds show, with the noise it is meant to reach.
-CheckedPicture picture_of(const TargetRounds& rounds, const Layers& image, const FrameStats& stats, bool is_done,
-                          bool may_begin_anew) {
+CheckedImage checked_image(const TargetRounds& rounds, const Layers& image, const FrameStats& stats, bool is_done,
+                           bool may_restart) {
     const double taken = stats.samples;
-    if (is_done) return {image, *stats.noise, taken, taken, may_begin_anew};
+    if (is_done) return {image, *stats.noise, taken, taken, may_restart};
     const double bound = rounds.noise_target();
     const double unit = rounds.allotment ? rounds.allotment->rays / pixel_count(rounds.view) : 1;
-    return {image, {bound, bound, bound}, unit * rounds.expected, unit * rounds.done, may_begin_anew};
+    return {image, {bound, bound, bound}, unit * rounds.expected, unit * rounds.done, may_restart};
 }
 }
 
 Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                         Goal goal, const FrameOptions& options, FrameStats& stats) {
-    assert(error_can_be_told(mode) && (goal.error > 0 || goal.seconds > 0));
+    assert(has_error_bound(mode) && (goal.error > 0 || goal.seconds > 0));
     if (!goal.clock) goal.clock = steady_seconds;
     const double start = goal.clock();
-    const std::optional<OrdersError> orders = orders_beside(mode, view, snapshot, settings, goal, options);
+    const std::optional<OrdersError> orders = measure_orders(mode, view, snapshot, settings, goal, options);
     TargetRounds rounds = rounds_of(mode, view, goal);
     rounds.start = start;
     Rendering rendering{mode, snapshot, options, settings, nullptr};
@@ -181,7 +181,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         stats.prepare_seconds = goal.clock() - rounds.start;
         if (rounds.choice->scout) round = 1; // no round may reuse the scout's random numbers
     }
-    const std::optional<Noise> moments = moments_beside(rounds, rendering);
+    const std::optional<Noise> moments = measure_moments(rounds, rendering);
     for (uint32_t check = 1; check <= max_checks; ++check) {
         const bool scouted = measured && rounds.choice->scout;
         const double work = scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds);
@@ -197,9 +197,9 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;
         Goal asked = goal;
         if (!rounds.is_timed) asked.seconds = 0; // no limit from the forecast: a finer candidate may take less time
-        const CheckedPicture picture = picture_of(rounds, result, stats, is_done, check < max_checks);
+        const CheckedImage picture = checked_image(rounds, result, stats, is_done, check < max_checks);
         const Choice after =
-            checked(*rounds.choice, picture, until, mode, rounds.view, snapshot, settings, asked, check, options);
+            check_choice(*rounds.choice, picture, until, mode, rounds.view, snapshot, settings, asked, check, options);
         if (after.candidate.name != rounds.choice->candidate.name) {
             begin(after, rounds, rendering, stats);
             continue;
@@ -208,7 +208,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         note_integrator(after, stats);
         const double times = after.times_to(goal.error, after.measured.integrator.bound, picture.noise);
         const double left = (times * picture.samples - picture.done) * after.measured.sample_work;
-        const bool worth = !has_rivals(after, mode) || left < goal.other_work;
+        const bool worth = !from_contest(after, mode) || left < goal.other_work;
         const bool lacks = !is_done || (rounds.freedom > 0 && !judge(rounds, result, stats));
         if (goal.error > 0 && worth && lacks)
             render_rounds(rounds, rendering, next_round(rounds, stats), max_rounds, result, stats, round);

@@ -2,39 +2,39 @@
 
 namespace tyndall {
 namespace {
-std::string plan_file(const FarmJob& job, const CommandBlanks& blanks) {
-    return blanks.folder + (job.plan_for_each_frame ? "plans/plan." + blanks.frames + ".json" : "plan.json");
+std::string plan_file(const FarmJob& job, const CommandVars& vars) {
+    return vars.folder + (job.plan_for_each_frame ? "plans/plan." + vars.frames + ".json" : "plan.json");
 }
 }
 
-CommandWords plan_words(const FarmJob& job, const CommandBlanks& blanks) {
-    CommandWords words{"plan", blanks.scene};
+CommandArgs plan_args(const FarmJob& job, const CommandVars& vars) {
+    CommandArgs words{"plan", vars.scene};
     words.insert(words.end(), job.plan_options.begin(), job.plan_options.end());
-    words.insert(words.end(), {"--frames", blanks.frames, "--save", plan_file(job, blanks)});
+    words.insert(words.end(), {"--frames", vars.frames, "--save", plan_file(job, vars)});
     return words;
 }
 
-CommandWords prepare_words(const FarmJob& job, const CommandBlanks& blanks) {
-    return {"prepare", "--plan", plan_file(job, blanks), "--frames", blanks.frames};
+CommandArgs prepare_args(const FarmJob& job, const CommandVars& vars) {
+    return {"prepare", "--plan", plan_file(job, vars), "--frames", vars.frames};
 }
 
-CommandWords render_words(const FarmJob& job, const CommandBlanks& blanks) {
+CommandArgs render_args(const FarmJob& job, const CommandVars& vars) {
     return {"render",
             "--plan",
-            plan_file(job, blanks),
+            plan_file(job, vars),
             "-o",
-            blanks.folder + part_pattern(job),
+            vars.folder + part_pattern(job),
             "--frames",
-            blanks.frames,
+            vars.frames,
             "--part",
-            blanks.part + "/" + std::to_string(job.parts),
+            vars.part + "/" + std::to_string(job.parts),
             "--resume"};
 }
 
-CommandWords merge_words(const FarmJob& job, const CommandBlanks& blanks) {
-    CommandWords words{
-        "merge", blanks.folder + part_pattern(job), "--parts", std::to_string(job.parts), "--frames", blanks.frames,
-        "-o",    blanks.folder + frame_pattern(job)};
+CommandArgs merge_args(const FarmJob& job, const CommandVars& vars) {
+    CommandArgs words{
+        "merge", vars.folder + part_pattern(job), "--parts", std::to_string(job.parts), "--frames", vars.frames,
+        "-o",    vars.folder + frame_pattern(job)};
     words.insert(words.end(), {"--wait", "30"}); // shared file systems show new files late
     if (job.remove_parts) words.emplace_back("--remove-parts");
     return words;

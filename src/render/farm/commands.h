@@ -4,15 +4,15 @@
 
 namespace tyndall {
 // What differs between tasks and engines. Frames are a range, or a single frame if each has its own plan.
-struct CommandBlanks {
+struct CommandVars {
     std::string folder; // of the job, with a trailing slash; empty if commands run in it
     std::string scene, frames, part;
 };
 
 // Words after `tyndall`.
-using CommandWords = std::vector<std::string>;
-CommandWords plan_words(const FarmJob& job, const CommandBlanks& blanks);
-CommandWords prepare_words(const FarmJob& job, const CommandBlanks& blanks);
-CommandWords render_words(const FarmJob& job, const CommandBlanks& blanks);
-CommandWords merge_words(const FarmJob& job, const CommandBlanks& blanks);
+using CommandArgs = std::vector<std::string>;
+CommandArgs plan_args(const FarmJob& job, const CommandVars& vars);
+CommandArgs prepare_args(const FarmJob& job, const CommandVars& vars);
+CommandArgs render_args(const FarmJob& job, const CommandVars& vars);
+CommandArgs merge_args(const FarmJob& job, const CommandVars& vars);
 }

@@ -25,22 +25,22 @@ struct Expected {
     std::string frame, part, plan_hash;
 };
 
-std::string disagreement(const ExrGlance& glance, const Expected& expected) {
-    if (glance.frame != expected.frame) return "belongs to another frame";
-    if (glance.partial) return "was merged while parts were missing";
-    if (glance.part != expected.part)
+std::string disagreement(const ExrSummary& summary, const Expected& expected) {
+    if (summary.frame != expected.frame) return "belongs to another frame";
+    if (summary.partial) return "was merged while parts were missing";
+    if (summary.part != expected.part)
         return expected.part.empty() ? "is a part, not a frame" : "is not the expected part (number or count differs)";
     const bool any_plan = expected.part.empty() && expected.plan_hash.empty();
-    if (glance.plan_hash != expected.plan_hash && !any_plan) return "was made from another plan";
+    if (summary.plan_hash != expected.plan_hash && !any_plan) return "was made from another plan";
     return {};
 }
 
 // Why the file cannot be used; none if it can, "" if it does not exist.
 std::optional<std::string> problem_of(const std::filesystem::path& file, const Expected& expected, bool verify) {
     try {
-        const std::optional<ExrGlance> glance = glance_at_exr(file);
-        if (!glance) return "";
-        if (const std::string why = disagreement(*glance, expected); !why.empty()) return why;
+        const std::optional<ExrSummary> summary = exr_summary(file);
+        if (!summary) return "";
+        if (const std::string why = disagreement(*summary, expected); !why.empty()) return why;
         if (verify && !expected.part.empty()) read_part(file);
         if (verify && expected.part.empty() && !read_exr(file).is_unchanged)
             return "damaged: its contents do not match its checksum";
@@ -57,8 +57,8 @@ std::string hash_of_plan(const std::filesystem::path& file) {
 }
 
 // The status of one frame; adds its files that cannot be used to `suspects`.
-FarmFrame look_at_frame(const FarmJob& job, int frame, const std::string& shared_plan, bool verify,
-                        std::vector<SuspectFile>& suspects) {
+FarmFrame frame_status(const FarmJob& job, int frame, const std::string& shared_plan, bool verify,
+                       std::vector<SuspectFile>& suspects) {
     FarmFrame result{frame, true, false, {}};
     Expected expected{std::to_string(frame), {}, shared_plan};
     const auto usable = [&](const std::string& name) {
@@ -116,21 +116,21 @@ void while_waiting(size_t count, const std::function<void(size_t)>& body) {
     if (problem) std::rethrow_exception(problem);
 }
 
-std::string command_text(const FarmJob& job, const CommandWords& words) {
+std::string command_text(const FarmJob& job, const CommandArgs& words) {
     std::string text = quoted_for_shell(job.program);
     for (const std::string& word : words) text += " " + quoted_for_shell(word);
     return text;
 }
 }
 
-FarmStatus look_at(const FarmJob& job, bool verify, const std::atomic<bool>& cancel) {
+FarmStatus job_status(const FarmJob& job, bool verify, const std::atomic<bool>& cancel) {
     FarmStatus status;
     const std::string shared_plan =
         job.plan_for_each_frame ? std::string() : content_hash(read_file(job.folder / "plan.json"));
     status.frames.resize(job.frames.size());
     std::vector<std::vector<SuspectFile>> suspects(job.frames.size());
     const auto look = [&](size_t i) {
-        if (!cancel) status.frames[i] = look_at_frame(job, job.frames[i], shared_plan, verify, suspects[i]);
+        if (!cancel) status.frames[i] = frame_status(job, job.frames[i], shared_plan, verify, suspects[i]);
     };
     if (verify)
         parallel_for(static_cast<int64_t>(job.frames.size()), [&](int64_t i) { look(static_cast<size_t>(i)); });
@@ -159,7 +159,7 @@ std::vector<int> missing_tasks(const FarmJob& job, const FarmStatus& status, con
 
 std::vector<std::string> missing_commands(const FarmJob& job, const FarmStatus& status) {
     std::vector<std::string> commands;
-    CommandBlanks blanks{job.folder.string() + "/", job.scene, {}, {}};
+    CommandVars vars{job.folder.string() + "/", job.scene, {}, {}};
     // Frames that share a plan go together.
     const auto add = [&](const std::vector<int>& frames, const auto& words) {
         std::vector<std::string> ranges;
@@ -168,8 +168,8 @@ std::vector<std::string> missing_commands(const FarmJob& job, const FarmStatus& 
         else if (!frames.empty())
             ranges.push_back(format_frames(frames));
         for (const std::string& range : ranges) {
-            blanks.frames = range;
-            commands.push_back(command_text(job, words(job, blanks)));
+            vars.frames = range;
+            commands.push_back(command_text(job, words(job, vars)));
         }
     };
     const auto frames_where = [&](const auto& is_meant) {
@@ -178,13 +178,13 @@ std::vector<std::string> missing_commands(const FarmJob& job, const FarmStatus& 
             if (!frame.finished && is_meant(frame)) frames.push_back(frame.frame);
         return frames;
     };
-    if (job.plan_for_each_frame) add(frames_where([](const FarmFrame& frame) { return !frame.planned; }), plan_words);
+    if (job.plan_for_each_frame) add(frames_where([](const FarmFrame& frame) { return !frame.planned; }), plan_args);
     for (int part = 1; part <= job.parts; ++part) {
-        blanks.part = std::to_string(part);
+        vars.part = std::to_string(part);
         add(frames_where([&](const FarmFrame& frame) { return std::ranges::count(frame.missing, part) > 0; }),
-            render_words);
+            render_args);
     }
-    add(frames_where([](const FarmFrame&) { return true; }), merge_words);
+    add(frames_where([](const FarmFrame&) { return true; }), merge_args);
     return commands;
 }
 }

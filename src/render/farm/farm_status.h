@@ -25,7 +25,7 @@ struct FarmStatus {
 
 // A merged frame counts as finished without its parts, which may be removed after merging. With `verify` every byte is
 // read. Throws Error (unreadable).
-FarmStatus look_at(const FarmJob& job, bool verify, const std::atomic<bool>& cancel);
+FarmStatus job_status(const FarmJob& job, bool verify, const std::atomic<bool>& cancel);
 
 // The unfinished tasks of a step (plan, prepare, parts, merge), numbered as in the job's scripts: chunks in order, and
 // parts within them.

@@ -55,7 +55,7 @@ TaskForecast forecast_task(const FarmJob& job, const Scene& scene, const RenderR
                            std::atomic<bool>& cancel) {
     RenderRequest request = asked;
     request.frames = {job.frames.front()};
-    RenderPlan plan = plan_as_asked(request);
+    RenderPlan plan = requested_plan(request);
     const bool counted = !job.plan_for_each_frame; // the number of samples is known
     if (counted) request.grouping = grouping_of(plan.settings.pixel.samples);
     const LoadedFrame loaded = load_first_frame(scene, request);

@@ -92,7 +92,7 @@ Json requirements(const FarmJob& job, const TaskLimits& limits) {
 }
 
 Json step(const FarmJob& job, const TaskLimits& limits, const char* name, const char* after,
-          std::vector<Json> parameters_of_task, CommandWords words) {
+          std::vector<Json> parameters_of_task, CommandArgs words) {
     words.insert(words.end(), {"--progress", "openjd"});
     if (job.cpus > 0) words.insert(words.end(), {"--threads", std::to_string(job.cpus)});
     const Json cancelation =
@@ -123,18 +123,18 @@ void check_words(const FarmJob& job) {
 
 std::string openjd_template(const FarmJob& job, const TaskLimits& limits) {
     check_words(job);
-    const CommandBlanks blanks{"{{Param.Folder}}/", scene_name(job), "{{Task.Param.Frames}}", "{{Task.Param.Part}}"};
+    const CommandVars vars{"{{Param.Folder}}/", scene_name(job), "{{Task.Param.Frames}}", "{{Task.Param.Part}}"};
     const Json frames = frames_parameter(job);
     const Json part = json_object({{"name", "Part"}, {"type", "INT"}, {"range", "1-" + std::to_string(job.parts)}});
     std::vector<Json> steps;
-    if (job.plan_for_each_frame) steps.push_back(step(job, limits, "Plan", nullptr, {frames}, plan_words(job, blanks)));
+    if (job.plan_for_each_frame) steps.push_back(step(job, limits, "Plan", nullptr, {frames}, plan_args(job, vars)));
     const char* before = job.plan_for_each_frame ? "Plan" : nullptr;
     if (shares_work(job)) {
-        steps.push_back(step(job, limits, "Prepare", before, {frames}, prepare_words(job, blanks)));
+        steps.push_back(step(job, limits, "Prepare", before, {frames}, prepare_args(job, vars)));
         before = "Prepare";
     }
-    steps.push_back(step(job, limits, "Parts", before, {frames, part}, render_words(job, blanks)));
-    steps.push_back(step(job, limits, "Merge", "Parts", {frames}, merge_words(job, blanks)));
+    steps.push_back(step(job, limits, "Parts", before, {frames, part}, render_args(job, vars)));
+    steps.push_back(step(job, limits, "Merge", "Parts", {frames}, merge_args(job, vars)));
 
     JsonMembers members{{"specificationVersion", "jobtemplate-2023-09"}};
     if (!job.plan_for_each_frame) members.emplace_back("extensions", std::vector<Json>{"TASK_CHUNKING"});

@@ -30,7 +30,7 @@ std::string filled(std::string_view script, const Fillings& fillings) {
     return text;
 }
 
-std::string shell_line(const CommandWords& words) {
+std::string shell_line(const CommandArgs& words) {
     std::string line;
     for (const std::string& word : words) {
         line += line.empty() ? "" : " ";
@@ -51,19 +51,19 @@ std::string chunk_table(const FarmJob& job) {
 }
 
 std::string slurm_task_script(const FarmJob& job) {
-    const CommandBlanks blanks{"", job.scene, std::string(frames_blank), std::string(part_blank)};
+    const CommandVars vars{"", job.scene, std::string(frames_blank), std::string(part_blank)};
     const std::string plan = job.plan_for_each_frame ? "plan)\n  frames=${chunks[number]}\n  run " +
-                                                           shell_line(plan_words(job, blanks)) + " ;;\n"
+                                                           shell_line(plan_args(job, vars)) + " ;;\n"
                                                      : std::string();
     const std::string prepare = shares_work(job) ? "prepare)\n  frames=${chunks[number]}\n  run " +
-                                                       shell_line(prepare_words(job, blanks)) + " ;;\n"
+                                                       shell_line(prepare_args(job, vars)) + " ;;\n"
                                                  : std::string();
     return filled(slurm_task_text, {{"@PROGRAM@", quoted_for_shell(job.program)},
                                     {"@CHUNKS@", chunk_table(job)},
                                     {"@PARTS@", std::to_string(job.parts)},
                                     {"@PLAN@\n", plan + prepare},
-                                    {"@RENDER@", shell_line(render_words(job, blanks))},
-                                    {"@MERGE@", shell_line(merge_words(job, blanks))}});
+                                    {"@RENDER@", shell_line(render_args(job, vars))},
+                                    {"@MERGE@", shell_line(merge_args(job, vars))}});
 }
 
 namespace {

@@ -24,7 +24,7 @@ Path camera_path(const View& view, bool in_moments, ivec2 pixel, int sample, int
     result.off_center = glm::dot(off, off), result.weight = weight;
 
     Path path;
-    path.place = sample_place(view, pixel, sample);
+    path.place = sample_index(view, pixel, sample);
     if (in_moments) path.moment = moment_at(view, pixel, sample);
     const Camera& camera = in_moments ? view.shutter->cameras[static_cast<size_t>(path.moment)] : view.camera;
     path.ray = sample_ray(view, camera, position, path.place);
@@ -72,7 +72,7 @@ void find_faces(const Snapshot& snapshot, PathPacket& s) {
 SurfacePoint face_point(const Light& light, vec3 position) {
     SurfacePoint point;
     point.position = position, point.normal = point.face_normal = light.area->normal;
-    point.base_color = vec3(0), point.emission = radiance_of(light) * face_picture(*light.area, position);
+    point.base_color = vec3(0), point.emission = radiance_of(light) * face_texture(*light.area, position);
     return point;
 }
 }
@@ -90,36 +90,36 @@ void find_surfaces(const Snapshot& snapshot, int layer, PathPacket& s) {
     if (shows_faces(snapshot)) find_faces(snapshot, s);
 }
 
-SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const PathPacket& s) {
-    SurfacesMet met;
+SurfaceHits surface_hits(const Snapshot& snapshot, int layer, const PathPacket& s) {
+    SurfaceHits hits;
     for (int i = 0; i < s.count; ++i) {
         if (!s.hit(i)) continue;
-        SurfacePoint& point = met.points[met.count];
+        SurfacePoint& point = hits.points[hits.count];
         if (s.face[i] >= 0) {
             point = face_point(snapshot.lights[static_cast<size_t>(s.face[i])], s.path[i].ray.at(s.length[i]));
-            met.which[met.count++] = i;
+            hits.which[hits.count++] = i;
             continue;
         }
         point = snapshot.occluders->surface(s.tested[i], s.hits, i);
         if (s.hit_again(i)) point.alpha = 0;
         if (layer + 1 == max_layers) point.alpha = 1;
-        met.which[met.count++] = i;
+        hits.which[hits.count++] = i;
     }
-    return met;
+    return hits;
 }
 
-bool advance(const View& view, const SurfacesMet& met, PathPacket& s, std::span<PixelSample> samples) {
+bool advance(const View& view, const SurfaceHits& hits, PathPacket& s, std::span<PixelSample> samples) {
     int left = 0;
-    for (size_t k = 0; k < met.count; ++k) {
-        const int i = met.which[k];
+    for (size_t k = 0; k < hits.count; ++k) {
+        const int i = hits.which[k];
         Path path = s.path[i];
         const float t = s.length[i];
-        if (met.points[k].alpha >= 1) {
-            samples[path.lane].alpha = 1 - samples[path.lane].held;
+        if (hits.points[k].alpha >= 1) {
+            samples[path.lane].alpha = 1 - samples[path.lane].holdout;
             samples[path.lane].depth = planar_depth(view.camera, path.ray, t);
             continue;
         }
-        path.through *= 1 - met.points[k].alpha;
+        path.throughput *= 1 - hits.points[k].alpha;
         path.ray.origin = path.ray.at(t);
         path.ray.t_max -= t;
         path.skip = surface_skip(path.ray.origin, t);
@@ -130,19 +130,19 @@ bool advance(const View& view, const SurfacesMet& met, PathPacket& s, std::span<
     return left > 0;
 }
 
-RayNumbers ray_numbers(const View& view, int layer, const PathPacket& s) {
-    RayNumbers numbers;
+RayInputs ray_inputs(const View& view, int layer, const PathPacket& s) {
+    RayInputs inputs;
     for (int i = 0; i < s.count; ++i) {
         const Path& path = s.path[i];
         const uint32_t id = hash(path.seed, path.place.index, layer, use_id);
         const uint32_t within = hash(id, use_jitter) / (2 * path.samples);
-        numbers.ids[i] = id;
+        inputs.ids[i] = id;
         const uint32_t shift = path.shift + static_cast<uint32_t>(layer) * 0x9e3779b9u + within;
-        numbers.jitter[i] = view.jitter == Jitter::none ? 0.5f : stratified(path.place.index, shift);
-        numbers.positions[i] = path.position;
-        numbers.places[i] = path.place;
+        inputs.jitter[i] = view.jitter == Jitter::none ? 0.5f : stratified(path.place.index, shift);
+        inputs.positions[i] = path.position;
+        inputs.places[i] = path.place;
     }
-    return numbers;
+    return inputs;
 }
 
 namespace {
@@ -153,51 +153,52 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
     float near[16];
     Scatter scatter[16];
     for (size_t i = 0; i < count; ++i) rays[i] = s.path[i].ray, near[i] = s.path[i].skip;
-    const RayNumbers numbers = ray_numbers(tracer.view, 0, s);
+    const RayInputs inputs = ray_inputs(tracer.view, 0, s);
     const RayBatch batch{.rays = {rays, count},
-                         .ids = {numbers.ids, count},
+                         .ids = {inputs.ids, count},
                          .parts = parts,
-                         .jitter = {numbers.jitter, count},
-                         .places = {numbers.places, count},
+                         .jitter = {inputs.jitter, count},
+                         .places = {inputs.places, count},
                          .clip_near = {near, count},
-                         .positions = {numbers.positions, count}};
+                         .positions = {inputs.positions, count}};
     tyndall::scatter(tracer, batch, {scatter, count});
 
     for (size_t i = 0; i < count; ++i) {
         PixelSample& result = samples[i];
         result.surface = scatter[i].surface, result.background = scatter[i].background;
-        result.inscatter = scatter[i].radiance, result.held = scatter[i].held;
+        result.inscatter = scatter[i].radiance, result.holdout = scatter[i].holdout;
         result.transmittance = scatter[i].transmittance;
         result.channels = scatter[i].transmittance * scatter[i].tint;
         result.validity = scatter[i].validity;
         result.steps = scatter[i].steps;
-        s.path[i].through = scatter[i].transmittance * scatter[i].tint;
+        s.path[i].throughput = scatter[i].transmittance * scatter[i].tint;
     }
 }
 
 // Traces through surfaces for alpha and depth.
-void follow_surfaces(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples) {
+void trace_surfaces(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples) {
     for (int layer = 0; layer < max_layers; ++layer) {
         find_surfaces(tracer.snapshot, layer, s);
         for (int i = 0; i < s.count; ++i)
             if (!s.hit(i))
-                samples[s.path[i].lane].alpha = 1 - mean_component(s.path[i].through) - samples[s.path[i].lane].held;
-        const SurfacesMet met = surfaces_met(tracer.snapshot, layer, s);
-        if (!advance(tracer.view, met, s, samples)) return;
+                samples[s.path[i].lane].alpha =
+                    1 - mean_component(s.path[i].throughput) - samples[s.path[i].lane].holdout;
+        const SurfaceHits hits = surface_hits(tracer.snapshot, layer, s);
+        if (!advance(tracer.view, hits, s, samples)) return;
     }
 }
 }
 
-void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
+void trace_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
     add_light(tracer, s, samples, parts);
-    follow_surfaces(tracer, s, samples);
+    trace_surfaces(tracer, s, samples);
 }
 
-bool has_single_depths(const FrameTracer& tracer) {
+bool has_center_depths(const FrameTracer& tracer) {
     return tracer.view.camera.lens || !tracer.prepared.moments.empty();
 }
 
-void depths_through_middle(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<float> depths) {
+void center_depths(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<float> depths) {
     View pinhole = tracer.view;
     pinhole.camera.lens = {}, pinhole.filter = PixelFilter::center;
     pinhole.pixel_samples = pinhole.batches = 1, pinhole.leaves = 0;
@@ -205,7 +206,7 @@ void depths_through_middle(const FrameTracer& tracer, std::span<const ivec2> pix
     PathPacket s;
     PixelSample samples[16];
     start_paths(pinhole, false, pixels, 0, s, samples);
-    follow_surfaces(tracer, s, samples);
+    trace_surfaces(tracer, s, samples);
     for (size_t i = 0; i < pixels.size(); ++i) depths[i] = samples[i].depth;
 }
 }

@@ -14,11 +14,11 @@ enum : uint32_t { use_id = 1, use_jitter = 2, use_soft_light = 3 };
 struct Path {
     Ray ray;              // from the camera or the last BLEND surface
     float skip = 0;       // surfaces nearer than this are ignored: the near plane, or the surface just left
-    vec3 through{1};      // throughput of fog and BLEND surfaces so far
+    vec3 throughput{1};   // throughput of fog and BLEND surfaces so far
     vec3 fog{1};          // throughput of fog alone
     uint32_t seed = 0;    // of the pixel and batch in this frame
     uint32_t shift = 0;   // of its jitter
-    SamplePlace place;    // in the batch
+    SampleIndex place;    // in the batch
     uint32_t samples = 1; // of the batch so far
     vec2 screen{0};       // image position, 0..1
     vec2 position{0};     // the same in pixels
@@ -42,17 +42,17 @@ struct PathPacket { // the active paths, packed
 };
 
 // The surfaces hit, packed.
-struct SurfacesMet {
+struct SurfaceHits {
     SurfacePoint points[16];
     int which[16]; // the path of each
     size_t count = 0;
 };
 
 // Per-ray inputs of a mode besides the rays.
-struct RayNumbers {
+struct RayInputs {
     uint32_t ids[16];
     float jitter[16];
-    SamplePlace places[16];
+    SampleIndex places[16];
     vec2 positions[16];
 };
 
@@ -63,21 +63,21 @@ void start_paths(const View& view, bool in_moments, std::span<const ivec2> pixel
 
 // Finds the first surface of each path. The 64th layer counts as opaque.
 void find_surfaces(const Snapshot& snapshot, int layer, PathPacket& s);
-SurfacesMet surfaces_met(const Snapshot& snapshot, int layer, const PathPacket& s);
+SurfaceHits surface_hits(const Snapshot& snapshot, int layer, const PathPacket& s);
 
 // Ends the paths at opaque surfaces and moves the others past theirs; true while any is left.
-bool advance(const View& view, const SurfacesMet& met, PathPacket& s, std::span<PixelSample> samples);
+bool advance(const View& view, const SurfaceHits& hits, PathPacket& s, std::span<PixelSample> samples);
 
-RayNumbers ray_numbers(const View& view, int layer, const PathPacket& s);
+RayInputs ray_inputs(const View& view, int layer, const PathPacket& s);
 
 // For modes with Surfaces::own: one ray per path, from the camera to the far plane.
-void follow_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts);
+void trace_own_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts);
 
 // Whether depths come from separate rays through pixel centers: with a lens or an open shutter, those of samples would
 // be noisy along edges.
-bool has_single_depths(const FrameTracer& tracer);
+bool has_center_depths(const FrameTracer& tracer);
 
 // Planar depths of the first opaque surfaces on the rays through the centers of up to 16 pixels, at the middle of the
 // lens and of the shutter interval.
-void depths_through_middle(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<float> depths);
+void center_depths(const FrameTracer& tracer, std::span<const ivec2> pixels, std::span<float> depths);
 }

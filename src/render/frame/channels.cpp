@@ -33,10 +33,10 @@ void take_channel(const Scatter& from, glm::length_t c, Scatter& to) {
     to.radiance[c] = from.radiance[c], to.surface[c] = from.surface[c], to.background[c] = from.background[c];
     to.tint[c] = from.transmittance, to.steps += from.steps;
     to.validity = std::min(to.validity, from.validity);
-    to.held += from.held / 3;
+    to.holdout += from.holdout / 3;
 }
 
-ScatterFunction together(std::vector<ScatterFunction> channels) {
+ScatterFunction combine_channels(std::vector<ScatterFunction> channels) {
     return [channels = std::move(channels)](const RayBatch& batch, std::span<Scatter> results) {
         std::ranges::fill(results, Scatter());
         std::vector<Scatter> found(results.size());
@@ -71,7 +71,7 @@ Prepared prepare_moment(const Mode& mode, const View& view, const Snapshot& snap
         result.mode_seconds += channel.mode_seconds;
         result.channels.push_back(std::move(channel));
     }
-    result.scatter = together(std::move(channels));
+    result.scatter = combine_channels(std::move(channels));
     return result;
 }
 

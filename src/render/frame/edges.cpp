@@ -112,7 +112,7 @@ std::shared_ptr<const TileFactors> edge_factors(const FrameTask& task, FrameStat
         return nullptr;
     const ivec2 low = task.layers.low, high = low + task.layers.size;
     return std::make_shared<const TileFactors>(
-        found_or_made<TileFactors>(cache_folder(task.tracer.snapshot), "edges", edges_content(task),
+        load_or_build<TileFactors>(cache_folder(task.tracer.snapshot), "edges", edges_content(task),
                                    [&] { return factors_by_contrast(task.tracer, low, high, stats); }));
 }
 }

@@ -47,9 +47,9 @@ void render_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, F
         for (size_t i = 0; i < count; ++i) sums[i].end_batch(batch_size);
     }
 
-    if (has_single_depths(task.tracer)) {
+    if (has_center_depths(task.tracer)) {
         float depths[16];
-        depths_through_middle(task.tracer, {tile.pixels, count}, depths);
+        center_depths(task.tracer, {tile.pixels, count}, depths);
         for (size_t i = 0; i < count; ++i) sums[i].depth = depths[i];
     }
 
@@ -162,7 +162,7 @@ View view_before_post(const View& view) {
 void add_post(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, Layers& layers,
               FrameStats& stats) {
     const double start = steady_seconds();
-    const Addition addition = mode.prepare_post(view, snapshot, settings)({layers.color, layers.alpha, layers.depth});
+    const PostOutput addition = mode.prepare_post(view, snapshot, settings)({layers.color, layers.alpha, layers.depth});
     add(addition.radiance, layers.inscatter);
     for (size_t i = 0; i < layers.validity.pixels.size(); ++i)
         layers.validity.pixels[i] = std::min(layers.validity.pixels[i], addition.validity.pixels[i]);
@@ -189,12 +189,12 @@ void prepare_files(const Mode& mode, const View& given, const Snapshot& snapshot
     double start = steady_seconds();
     if (mode.surfaces == Surfaces::shared) {
         view.lamps = lamps_in(view, snapshot);
-        note_cost(folder, "lamps in view", steady_seconds() - start);
+        record_cost(folder, "lamps in view", steady_seconds() - start);
     }
     start = steady_seconds();
-    const double noted = noted_seconds(folder);
+    const double noted = rebuild_seconds(folder);
     const FrameTask task = make_task(mode, view, snapshot, settings, {});
-    note_cost(folder, mode.name, steady_seconds() - start - (noted_seconds(folder) - noted));
+    record_cost(folder, mode.name, steady_seconds() - start - (rebuild_seconds(folder) - noted));
     FrameStats probed;
     if (mode.surfaces == Surfaces::shared) edge_factors(task, probed);
 }

@@ -75,7 +75,7 @@ std::vector<Image<vec3>*> add_light_layers(const LightLayers& lights, Layers& la
     return result;
 }
 
-bool tells_channels(const Snapshot& snapshot) {
+bool has_channel_layer(const Snapshot& snapshot) {
     return is_chromatic(snapshot) || (snapshot.scene && has_colored_fog(*snapshot.scene));
 }
 
@@ -92,20 +92,21 @@ bool contains(const Layers& layers, ivec2 pixel) {
 
 namespace {
 // Whether alpha has to account for mattes that hold out the background.
-bool counts_held(const Snapshot& snapshot) { return has_background(snapshot.background) && has_mattes(snapshot); }
+bool counts_holdout(const Snapshot& snapshot) { return has_background(snapshot.background) && has_mattes(snapshot); }
 }
 
 FrameTask make_task(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                     const FrameOptions& options) {
     // Local variables first: g++ 12 destroys members of a nested braced initializer twice when a later one throws.
     Layers layers = make_layers(view, options.halves);
-    if (tells_channels(snapshot)) layers.channel_transmittance = Image<vec3>(layers.size);
+    if (has_channel_layer(snapshot)) layers.channel_transmittance = Image<vec3>(layers.size);
     std::shared_ptr<const Prepared> prepared = options.prepared;
     if (!prepared)
         prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, options.history));
     auto fog_seconds = std::make_shared<std::atomic<double>>(0);
     FrameTracer tracer = frame_tracer(mode, view, snapshot, settings, *prepared);
-    tracer.covered = view.background && view.covered && counts_held(snapshot), tracer.fog_seconds = fog_seconds.get();
+    tracer.covered = view.background && view.covered && counts_holdout(snapshot),
+    tracer.fog_seconds = fog_seconds.get();
     const double mode_seconds = options.prepared ? 0 : prepared->mode_seconds;
     FrameTask task{prepared, fog_seconds, tracer, mode_seconds, std::move(layers), {}, {}, 0, options.cancel};
     if (snapshot.files) {
@@ -123,8 +124,8 @@ namespace {
 // Fails if all moments, judged by the first few, would not fit into memory.
 void check_memory(double before, size_t prepared, size_t moments) {
     constexpr double max_share = 0.8, gibibyte = 1 << 30;
-    const double machine = static_cast<double>(machine_memory());
-    const double one = (static_cast<double>(held_memory()) - before) / static_cast<double>(prepared);
+    const double machine = static_cast<double>(physical_memory());
+    const double one = (static_cast<double>(resident_memory()) - before) / static_cast<double>(prepared);
     const double all = before + static_cast<double>(moments) * one;
     if (machine > 0 && all > max_share * machine)
         fail(ExitCode::out_of_memory, "motion blur",
@@ -142,7 +143,7 @@ Prepared prepare_frame(const Mode& mode, const View& view, const Snapshot& snaps
     const LightLayers layers = light_layers(snapshot);
     View at_moment = view;
     at_moment.shutter = nullptr;
-    const double held = static_cast<double>(held_memory());
+    const double held = static_cast<double>(resident_memory());
     for (size_t i = 0; i < snapshot.moments->size(); ++i) {
         const Snapshot& moment = (*snapshot.moments)[i];
         at_moment.camera = view.shutter->cameras[i];

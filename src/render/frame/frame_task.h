@@ -36,7 +36,7 @@ std::vector<int> layers_of_lights(const LightLayers& layers, const Snapshot& sna
 std::vector<Image<vec3>*> add_light_layers(const LightLayers& lights, Layers& layers);
 
 // Whether the frame has the layer channel_transmittance.
-bool tells_channels(const Snapshot& snapshot);
+bool has_channel_layer(const Snapshot& snapshot);
 
 // Sets the task's parts, adding layers for them. `lights`: empty unless the view requests them.
 void find_parts(const View& view, const LightLayers& lights, FrameTask& task);

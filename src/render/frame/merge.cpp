@@ -49,9 +49,9 @@ float nearest_depth(std::span<const FramePart> parts, size_t pixel) {
 
 // Zeroes sections that would add noise: the mean of k section means has the variance of one sample times Σ(1 / n) / k²,
 // with n samples in each. Returns how many are left.
-int keep_helpful_sections(std::span<float> sums, size_t numbers) {
+int keep_helpful_sections(std::span<float> sums, size_t stride) {
     std::vector<float*> groups;
-    for (size_t at = 0; at < sums.size(); at += numbers)
+    for (size_t at = 0; at < sums.size(); at += stride)
         if (sums[at + taken_sum] > 0) groups.push_back(&sums[at]);
     std::ranges::stable_sort(groups, std::greater(), [](const float* group) { return group[taken_sum]; });
     size_t best = 0;
@@ -60,7 +60,7 @@ int keep_helpful_sections(std::span<float> sums, size_t numbers) {
         inverse += 1 / static_cast<double>(groups[k - 1][taken_sum]);
         if (const double variance = inverse / static_cast<double>(k * k); variance <= least) least = variance, best = k;
     }
-    for (size_t k = best; k < groups.size(); ++k) std::fill_n(groups[k], numbers, 0.0f);
+    for (size_t k = best; k < groups.size(); ++k) std::fill_n(groups[k], stride, 0.0f);
     return static_cast<int>(best);
 }
 
@@ -76,31 +76,31 @@ struct Merging {
 
 // Row `row` of the image, which is row `row - first` of the parts.
 void merge_row(std::span<const FramePart> parts, const Nodes& nodes, int first, int row, Merging& merging) {
-    const size_t numbers = merging.like.numbers, width = static_cast<size_t>(merging.like.size.x);
+    const size_t stride = merging.like.stride, width = static_cast<size_t>(merging.like.size.x);
     const size_t begin = static_cast<size_t>(row - first) * width;
     std::vector<std::vector<float>> sums;
     const int root = root_level(merging.like.leaves);
     for (int i = 0; i < merging.sections; ++i)
-        sums.push_back(node_sums(nodes, {i, root, 0}, begin * numbers, width * numbers));
+        sums.push_back(node_sums(nodes, {i, root, 0}, begin * stride, width * stride));
 
     FrameStats counted;
     int64_t empty = 0;
     bool alone = false;
-    std::vector<float> of_pixel(sums.size() * numbers);
+    std::vector<float> of_pixel(sums.size() * stride);
     for (size_t x = 0; x < width; ++x) {
         const ivec2 p(static_cast<int>(x), row);
         for (size_t g = 0; g < sums.size(); ++g) {
-            const std::span<const float> group = std::span(sums[g]).subspan(x * numbers, numbers);
-            std::ranges::copy(group, of_pixel.begin() + static_cast<ptrdiff_t>(g * numbers));
+            const std::span<const float> group = std::span(sums[g]).subspan(x * stride, stride);
+            std::ranges::copy(group, of_pixel.begin() + static_cast<ptrdiff_t>(g * stride));
             counted.camera_rays += static_cast<uint64_t>(group[taken_sum]);
             if (const float dropped = group[taken_sum] - group[kept_sum]; dropped > 0)
                 counted.drop(merging.like.low + p, static_cast<uint64_t>(dropped));
         }
-        const int kept = keep_helpful_sections(of_pixel, numbers);
+        const int kept = keep_helpful_sections(of_pixel, stride);
         alone |= kept < 2, empty += kept == 0;
         const float depth = nearest_depth(parts, begin + x);
         if (kept > 0)
-            store_sections(of_pixel, numbers, depth, p, merging.merged.layers, merging.lights);
+            store_sections(of_pixel, stride, depth, p, merging.merged.layers, merging.lights);
         else
             merging.merged.layers.depth.at(p.x, p.y) = infinity;
     }
@@ -111,7 +111,7 @@ void merge_row(std::span<const FramePart> parts, const Nodes& nodes, int first, 
 // Lines that are compressed together lie in one band; a band's sums take about 256 MB.
 int rows_of_band(const FramePart& like, size_t nodes) {
     constexpr size_t packed = 16, bytes = size_t{256} << 20;
-    const size_t row = nodes * like.numbers * static_cast<size_t>(like.size.x) * sizeof(float);
+    const size_t row = nodes * like.stride * static_cast<size_t>(like.size.x) * sizeof(float);
     return static_cast<int>(std::max<size_t>(bytes / row / packed, 1) * packed);
 }
 }

@@ -83,8 +83,8 @@ void store_tile(const TileSums& tile, const std::vector<std::vector<float>>& sum
         const size_t at = work.place(tile.tile.pixels[i]);
         for (size_t n = 0; n < sums.size(); ++n)
             if (!sums[n].empty())
-                std::copy_n(sums[n].begin() + static_cast<ptrdiff_t>(i * part.numbers), part.numbers,
-                            part.sums[n].begin() + static_cast<ptrdiff_t>(at * part.numbers));
+                std::copy_n(sums[n].begin() + static_cast<ptrdiff_t>(i * part.stride), part.stride,
+                            part.sums[n].begin() + static_cast<ptrdiff_t>(at * part.stride));
         part.depth.pixels[at] = tile.depth[i], part.off_center.pixels[at] = tile.off_center[i];
         part.finished.pixels[at] = 1;
     }
@@ -108,7 +108,7 @@ void render_part_tile(const FrameTask& task, const PixelTile& tile, int64_t bloc
         if (part.range.slices == 1 || holds(part.range, int64_t{node.section} * part.leaves + node.index, block))
             sums[n] = node_sums(sums_of, node);
     }
-    if (has_single_depths(task.tracer)) depths_through_middle(task.tracer, {tile.pixels, tile.count}, sums_of.depth);
+    if (has_center_depths(task.tracer)) center_depths(task.tracer, {tile.pixels, tile.count}, sums_of.depth);
     store_tile(sums_of, sums, work);
     keep_in_time(work);
 }
@@ -118,7 +118,7 @@ void count_dropped(const FramePart& part, FrameStats& stats) {
     for (int y = 0; y < part.size.y; ++y)
         for (int x = 0; x < part.size.x; ++x)
             for (const std::vector<float>& sums : part.sums) {
-                const float* own = &sums[static_cast<size_t>(y * part.size.x + x) * part.numbers];
+                const float* own = &sums[static_cast<size_t>(y * part.size.x + x) * part.stride];
                 if (const float dropped = own[taken_sum] - own[kept_sum]; dropped > 0)
                     stats.drop(part.low + ivec2(x, y), static_cast<uint64_t>(dropped));
             }
@@ -126,12 +126,12 @@ void count_dropped(const FramePart& part, FrameStats& stats) {
 
 bool is_same(const FramePart& a, const FramePart& b) {
     return a.display == b.display && a.low == b.low && a.size == b.size && a.range == b.range && a.leaves == b.leaves &&
-           a.numbers == b.numbers && a.covered == b.covered && a.lights.names == b.lights.names;
+           a.stride == b.stride && a.covered == b.covered && a.lights.names == b.lights.names;
 }
 
 // Throws Error (usage) for a part that does not fit into an EXR file.
 void check_size(const FramePart& part) {
-    const size_t channels = nodes_of(part.range, part.leaves).size() * part.numbers + 3; // Z, offset and finished
+    const size_t channels = nodes_of(part.range, part.leaves).size() * part.stride + 3; // Z, offset and finished
     const double bytes = sizeof(float) * static_cast<double>(channels) * part.size.x * part.size.y;
     if (bytes > static_cast<double>(max_decoded_bytes) || channels > max_channels)
         fail(
@@ -146,7 +146,7 @@ FramePart begun_part(FramePart part, std::optional<FramePart> last) {
     if (last && is_same(*last, part)) return std::move(*last);
     part.nodes = nodes_of(part.range, part.leaves);
     const size_t pixels = static_cast<size_t>(part.size.x) * static_cast<size_t>(part.size.y);
-    part.sums.assign(part.nodes.size(), std::vector<float>(pixels * part.numbers, 0.0f));
+    part.sums.assign(part.nodes.size(), std::vector<float>(pixels * part.stride, 0.0f));
     part.depth = part.off_center = Image<float>(part.size, infinity);
     part.finished = Image<float>(part.size, 0.0f);
     return part;
@@ -181,7 +181,7 @@ FramePart render_part(const Mode& mode, const View& given, const Snapshot& snaps
     FramePart part;
     part.display = task.layers.display, part.low = task.layers.low, part.size = task.layers.size;
     part.range = range, part.leaves = view.leaves;
-    part.numbers = fixed_sums + 3 * task.parts.size(), part.lights = lights;
+    part.stride = fixed_sums + 3 * task.parts.size(), part.lights = lights;
     part.colored = task.parts.size() > task.fog_parts;
     part.covered = given.background && has_background(snapshot.background) && !has_mattes(snapshot);
     check_size(part);

@@ -60,7 +60,7 @@ struct FramePart {
     ivec2 display{0}, low{0}, size{0};
     PartRange range;
     int leaves = 1;       // per section
-    size_t numbers = 0;   // floats per pixel and node
+    size_t stride = 0;    // floats per pixel and node
     bool covered = false; // whether the background is part of the image: then alpha is 1
     bool colored = false; // whether the last RGB sum is channel_transmittance
     LightLayers lights;   // if requested
@@ -104,7 +104,7 @@ FramePart render_part(const Mode& mode, const View& view, const Snapshot& snapsh
 void render_grouped_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, FrameStats& stats);
 
 // Writes a pixel from the concatenated sums of its sections; `parts` receive the parts of inscatter.
-void store_sections(std::span<const float> sums, size_t numbers, float depth, ivec2 p, Layers& layers,
+void store_sections(std::span<const float> sums, size_t stride, float depth, ivec2 p, Layers& layers,
                     std::span<Image<vec3>* const> parts);
 
 int mean_samples(uint64_t samples, const Layers& layers);

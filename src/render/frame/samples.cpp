@@ -38,63 +38,64 @@ void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<Pixe
         rays[i] = {ray.origin, ray.direction, open[i] ? reach_of(tracer, ray) : s.length[i]};
     }
 
-    const RayNumbers numbers = ray_numbers(tracer.view, layer, s);
+    const RayInputs inputs = ray_inputs(tracer.view, layer, s);
     const size_t count = static_cast<size_t>(s.count);
     std::vector<vec3> fog_parts(part_count * count, vec3(0));
     const RayBatch batch{.rays = {rays, count},
-                         .ids = {numbers.ids, count},
+                         .ids = {inputs.ids, count},
                          .parts = fog_parts,
-                         .jitter = {numbers.jitter, count},
-                         .places = {numbers.places, count},
-                         .positions = {numbers.positions, count},
+                         .jitter = {inputs.jitter, count},
+                         .places = {inputs.places, count},
+                         .positions = {inputs.positions, count},
                          .open = {open, count}};
     tyndall::scatter(tracer, batch, {scatter, count});
 
     for (size_t i = 0; i < count; ++i) {
         Path& path = s.path[i];
         PixelSample& result = samples[path.lane];
-        result.inscatter += path.through * scatter[i].radiance;
+        result.inscatter += path.throughput * scatter[i].radiance;
         path.fog *= scatter[i].transmittance * scatter[i].tint;
         result.transmittance = mean_component(path.fog), result.channels = path.fog;
         result.validity = std::min(result.validity, scatter[i].validity);
         result.steps += scatter[i].steps;
         for (size_t p = 0; p < part_count; ++p)
-            parts[static_cast<size_t>(path.lane) * part_count + p] += path.through * fog_parts[i * part_count + p];
-        path.through *= scatter[i].transmittance * scatter[i].tint;
+            parts[static_cast<size_t>(path.lane) * part_count + p] += path.throughput * fog_parts[i * part_count + p];
+        path.throughput *= scatter[i].transmittance * scatter[i].tint;
     }
 }
 
 // Adds the light of the surfaces hit.
-void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, const SurfacesMet& met,
+void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, const SurfaceHits& hits,
                   std::span<PixelSample> samples) {
     const size_t points = static_cast<size_t>(tracer.light_points);
-    std::vector<vec2> u(met.count * points);
+    std::vector<vec2> u(hits.count * points);
     vec3 radiance[16];
     const bool soft =
         tracer.snapshot.environment || tracer.prepared.emitters || std::ranges::any_of(tracer.snapshot.lights, is_soft);
-    for (size_t k = 0; soft && k < met.count; ++k) {
-        const Path& path = s.path[met.which[k]];
+    for (size_t k = 0; soft && k < hits.count; ++k) {
+        const Path& path = s.path[hits.which[k]];
         for (size_t p = 0; p < points; ++p) {
             const uint32_t index = path.place.index * static_cast<uint32_t>(points) + static_cast<uint32_t>(p);
             const Sample2 random = sample2(index, hash(path.seed, layer, use_soft_light));
             u[k * points + p] = {random.x, random.y};
         }
     }
-    shade(tracer.snapshot, tracer.prepared, {met.points, met.count}, u, {radiance, met.count});
+    shade(tracer.snapshot, tracer.prepared, {hits.points, hits.count}, u, {radiance, hits.count});
 
-    for (size_t k = 0; k < met.count; ++k) {
-        const Path& path = s.path[met.which[k]];
-        if (is_matte(tracer.snapshot, met.points[k].instance))
-            samples[path.lane].held += mean_component(path.through) * met.points[k].alpha;
+    for (size_t k = 0; k < hits.count; ++k) {
+        const Path& path = s.path[hits.which[k]];
+        if (is_matte(tracer.snapshot, hits.points[k].instance))
+            samples[path.lane].holdout += mean_component(path.throughput) * hits.points[k].alpha;
         else
-            samples[path.lane].surface += path.through * met.points[k].alpha * radiance[k];
+            samples[path.lane].surface += path.throughput * hits.points[k].alpha * radiance[k];
     }
 }
 
 void add_background(const FrameTracer& tracer, const Path& path, PixelSample& result) {
     result.background +=
-        path.through * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
-    result.alpha = std::max(1 - mean_component(path.through) - result.held, 0.0f); // rounding may make it negative
+        path.throughput * background_radiance(tracer.snapshot.background, path.ray.direction, path.screen);
+    result.alpha =
+        std::max(1 - mean_component(path.throughput) - result.holdout, 0.0f); // rounding may make it negative
 }
 }
 
@@ -103,17 +104,18 @@ bool PixelSample::finite() const {
 }
 
 namespace {
-void follow_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
+void trace_shared_paths(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples,
+                        std::span<vec3> parts) {
     for (int layer = 0; layer < max_layers; ++layer) {
         find_surfaces(tracer.snapshot, layer, s);
         add_fog(tracer, layer, s, samples, parts);
         for (int i = 0; i < s.count; ++i)
             if (!s.hit(i)) add_background(tracer, s.path[i], samples[s.path[i].lane]);
 
-        const SurfacesMet met = surfaces_met(tracer.snapshot, layer, s);
-        if (met.count == 0) return;
-        add_surfaces(tracer, layer, s, met, samples);
-        if (!advance(tracer.view, met, s, samples)) return;
+        const SurfaceHits hits = surface_hits(tracer.snapshot, layer, s);
+        if (hits.count == 0) return;
+        add_surfaces(tracer, layer, s, hits, samples);
+        if (!advance(tracer.view, hits, s, samples)) return;
     }
 }
 }
@@ -135,17 +137,17 @@ void scatter(const FrameTracer& tracer, const RayBatch& batch, std::span<Scatter
 }
 
 namespace {
-void follow(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
+void trace_packet(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> samples, std::span<vec3> parts) {
     if (tracer.surfaces == Surfaces::own)
-        follow_own_paths(tracer, s, samples, parts);
+        trace_own_paths(tracer, s, samples, parts);
     else
-        follow_paths(tracer, s, samples, parts);
+        trace_shared_paths(tracer, s, samples, parts);
 }
 
 // Traces the paths of a packet that show one moment through its scene; adds the light of its lights to the frame's
 // layers.
-void follow_moment(const FrameTracer& tracer, const PathPacket& all, int moment, std::span<PixelSample> samples,
-                   std::span<vec3> parts) {
+void trace_moment(const FrameTracer& tracer, const PathPacket& all, int moment, std::span<PixelSample> samples,
+                  std::span<vec3> parts) {
     const Prepared& prepared = tracer.prepared.moments[static_cast<size_t>(moment)];
     const Snapshot& snapshot = (*tracer.snapshot.moments)[static_cast<size_t>(moment)];
     PathPacket s;
@@ -162,7 +164,7 @@ void follow_moment(const FrameTracer& tracer, const PathPacket& all, int moment,
     std::vector<vec3> own_parts(count * own_count, vec3(0));
     const FrameTracer at_moment{tracer.view,         snapshot,       prepared,          tracer.surfaces,
                                 tracer.light_points, tracer.covered, tracer.fog_seconds};
-    follow(at_moment, s, {own, count}, own_parts);
+    trace_packet(at_moment, s, {own, count}, own_parts);
 
     for (size_t i = 0; i < count; ++i) {
         const size_t lane = static_cast<size_t>(lanes[i]);
@@ -175,12 +177,12 @@ void follow_moment(const FrameTracer& tracer, const PathPacket& all, int moment,
     }
 }
 
-void follow_moments(const FrameTracer& tracer, const PathPacket& s, std::span<PixelSample> samples,
-                    std::span<vec3> parts) {
+void trace_moments(const FrameTracer& tracer, const PathPacket& s, std::span<PixelSample> samples,
+                   std::span<vec3> parts) {
     for (int i = 0; i < s.count; ++i) {
         const int moment = s.path[i].moment;
         const auto is_same = [&](const Path& path) { return path.moment == moment; };
-        if (std::none_of(s.path, s.path + i, is_same)) follow_moment(tracer, s, moment, samples, parts);
+        if (std::none_of(s.path, s.path + i, is_same)) trace_moment(tracer, s, moment, samples, parts);
     }
 }
 }
@@ -191,14 +193,14 @@ void trace_samples(const FrameTracer& tracer, std::span<const ivec2> pixels, int
     PathPacket s;
     start_paths(tracer.view, !tracer.prepared.moments.empty(), pixels, sample, s, samples);
     if (tracer.prepared.moments.empty())
-        follow(tracer, s, samples, parts);
+        trace_packet(tracer, s, samples, parts);
     else
-        follow_moments(tracer, s, samples, parts);
+        trace_moments(tracer, s, samples, parts);
 
     const size_t part_count = parts.size() / pixels.size();
     for (size_t i = 0; i < pixels.size(); ++i) {
         PixelSample& result = samples[i];
-        if (tracer.covered) result.alpha = 1 - result.held;
+        if (tracer.covered) result.alpha = 1 - result.holdout;
         if (!tracer.view.background) result.background = vec3(0);
         result.surface *= result.weight, result.background *= result.weight, result.inscatter *= result.weight;
         for (vec3& part : parts.subspan(i * part_count, part_count)) part *= result.weight;

@@ -15,7 +15,7 @@ struct PixelSample {
     float weight = 1;                             // of the sample in its pixel
     float alpha = 0, transmittance = 1, validity = 1;
     vec3 channels{1};       // the transmittance of each channel
-    float held = 0;         // share of the sample that mattes hold out
+    float holdout = 0;      // share of the sample that mattes hold out
     float depth = infinity; // planar z of the first opaque surface
     float off_center = 0;   // squared distance of the ray from the pixel's center, pixels²
     int steps = 0;

@@ -26,8 +26,8 @@ void add_sample(const PixelSample& sample, std::span<const vec3> parts, bool cha
 }
 
 std::vector<float> leaf_sums(TileSums& tile, int section, int leaf) {
-    const size_t count = tile.tile.count, numbers = tile.numbers(), part_count = tile.task.fog_parts;
-    std::vector<float> sums(count * numbers, 0.0f);
+    const size_t count = tile.tile.count, stride = tile.stride(), part_count = tile.task.fog_parts;
+    std::vector<float> sums(count * stride, 0.0f);
     std::vector<vec3> fog_parts(part_count * count);
     PixelSample samples[16];
     const auto cut = [&](int at) { return static_cast<int>(int64_t{tile.section_size} * at / tile.leaves); };
@@ -37,7 +37,7 @@ std::vector<float> leaf_sums(TileSums& tile, int section, int leaf) {
                       fog_parts);
         for (size_t i = 0; i < count; ++i) {
             if (!contains(tile.layers, tile.tile.pixels[i])) continue;
-            const std::span<float> own{sums.data() + i * numbers, numbers};
+            const std::span<float> own{sums.data() + i * stride, stride};
             const std::span<const vec3> parts{fog_parts.data() + i * part_count, part_count};
             ++tile.stats.camera_rays, tile.stats.steps += static_cast<uint64_t>(samples[i].steps), own[taken_sum] += 1;
             if (!samples[i].finite() || !std::ranges::all_of(parts, is_finite)) {
@@ -72,11 +72,11 @@ namespace {
 // The sums of a pixel's sections; those without samples are skipped.
 struct PixelSections {
     std::span<const float> sums;
-    size_t numbers; // of each
+    size_t stride; // of each
 
     template<class Body> void for_each(const Body& body) const {
-        for (size_t at = 0; at < sums.size(); at += numbers)
-            if (const std::span<const float> own = sums.subspan(at, numbers); own[taken_sum] > 0) body(own);
+        for (size_t at = 0; at < sums.size(); at += stride)
+            if (const std::span<const float> own = sums.subspan(at, stride); own[taken_sum] > 0) body(own);
     }
 };
 
@@ -132,9 +132,9 @@ PixelSum pixel_of(const PixelSections& sections, bool halves) {
 }
 }
 
-void store_sections(std::span<const float> sums, size_t numbers, float depth, ivec2 p, Layers& layers,
+void store_sections(std::span<const float> sums, size_t stride, float depth, ivec2 p, Layers& layers,
                     std::span<Image<vec3>* const> parts) {
-    const PixelSections sections{sums, numbers};
+    const PixelSections sections{sums, stride};
     PixelSum pixel = pixel_of(sections, !layers.half_a.empty());
     pixel.depth = depth;
     int samples = 0;
@@ -154,17 +154,17 @@ int mean_samples(uint64_t samples, const Layers& layers) {
 
 void render_grouped_tile(const FrameTask& task, const PixelTile& tile, Layers& layers, FrameStats& stats) {
     TileSums work{task, tile, stats};
-    const size_t numbers = work.numbers();
+    const size_t stride = work.stride();
     std::vector<std::vector<float>> sums;
     for (int i = 0; i < work.sections; ++i) sums.push_back(node_sums(work, {i, root_level(work.leaves), 0}));
 
-    std::vector<float> of_pixel(sums.size() * numbers);
+    std::vector<float> of_pixel(sums.size() * stride);
     for (size_t i = 0; i < tile.count; ++i) {
         if (!contains(layers, tile.pixels[i])) continue;
         for (size_t g = 0; g < sums.size(); ++g)
-            std::copy_n(sums[g].begin() + static_cast<ptrdiff_t>(i * numbers), numbers,
-                        of_pixel.begin() + static_cast<ptrdiff_t>(g * numbers));
-        store_sections(of_pixel, numbers, work.depth[i], tile.pixels[i] - layers.low, layers, task.parts);
+            std::copy_n(sums[g].begin() + static_cast<ptrdiff_t>(i * stride), stride,
+                        of_pixel.begin() + static_cast<ptrdiff_t>(g * stride));
+        store_sections(of_pixel, stride, work.depth[i], tile.pixels[i] - layers.low, layers, task.parts);
     }
 }
 }

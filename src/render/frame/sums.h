@@ -16,7 +16,7 @@ struct TileSums {
     int section_size = samples_of(task.tracer.view, tile.corner) / sections;
     std::vector<float> depth = std::vector<float>(16, infinity), off_center = depth;
 
-    size_t numbers() const { return fixed_sums + 3 * task.parts.size(); }
+    size_t stride() const { return fixed_sums + 3 * task.parts.size(); }
 };
 
 // The sums of a node, pixel by pixel. Throws Error (internal) when cancelled.

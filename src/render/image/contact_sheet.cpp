@@ -14,14 +14,14 @@ void put(const Image<glm::u8vec3>& tile, ivec2 corner, Image<glm::u8vec3>& sheet
 }
 }
 
-Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, const Display& display) {
+Image<glm::u8vec3> contact_sheet(const std::vector<SheetImage>& pictures, const Display& display) {
     if (pictures.empty()) return {};
     const ivec2 whole = pictures[0].color.size;
     const int width = std::min(whole.x, widest_tile);
     const ivec2 tile(width, std::max(1, whole.y * width / whole.x));
     const int scale = width >= widest_tile ? 3 : width >= widest_tile / 2 ? 2 : 1;
     size_t lines = 0;
-    for (const SheetPicture& picture : pictures) lines = std::max(lines, picture.lines.size());
+    for (const SheetImage& picture : pictures) lines = std::max(lines, picture.lines.size());
     const int strip = (static_cast<int>(lines) * letter_height + 2) * scale;
     const int count = static_cast<int>(pictures.size());
     const int columns = static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count))));
@@ -42,7 +42,7 @@ Image<glm::u8vec3> contact_sheet(const std::vector<SheetPicture>& pictures, cons
     return sheet;
 }
 
-void write_contact_sheet(const std::filesystem::path& file, const std::vector<SheetPicture>& pictures,
+void write_contact_sheet(const std::filesystem::path& file, const std::vector<SheetImage>& pictures,
                          const Display& display) {
     write_png(file, contact_sheet(pictures, display), text_of(display));
 }

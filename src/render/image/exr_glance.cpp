@@ -86,7 +86,7 @@ struct BlockTable {
 };
 
 // None if the header is longer than the bytes.
-std::optional<BlockTable> read_header(std::string_view bytes, const std::string& file, ExrGlance& glance) {
+std::optional<BlockTable> read_header(std::string_view bytes, const std::string& file, ExrSummary& summary) {
     Taken taken{bytes};
     if (taken.integer() != 20000630 || (taken.integer() & ~0x400) != 2)
         if (!taken.short_of) refuse(file, "is not a scanline OpenEXR image");
@@ -101,10 +101,10 @@ std::optional<BlockTable> read_header(std::string_view bytes, const std::string&
         if (size < 0) refuse(file, "damaged: an attribute has a negative size");
         Taken value{taken.bytes(static_cast<size_t>(size))};
         if (taken.short_of) return {};
-        if (name == "imageCounter" && type == "int") glance.frame = std::to_string(value.integer());
-        if (name == "tyndall:part") glance.part = value.left;
-        if (name == "tyndall:planHash") glance.plan_hash = value.left;
-        if (name == "tyndall:partial") glance.partial = true;
+        if (name == "imageCounter" && type == "int") summary.frame = std::to_string(value.integer());
+        if (name == "tyndall:part") summary.part = value.left;
+        if (name == "tyndall:planHash") summary.plan_hash = value.left;
+        if (name == "tyndall:partial") summary.partial = true;
         if (name == "dataWindow") value.integer(), low = value.integer(), value.integer(), high = value.integer();
         if (name == "compression" && size == 1) table.lines = value.left[0] == 3 ? 16 : 1;
     }
@@ -129,16 +129,16 @@ bool ends_with_last_block(const ReadFile& file, std::string_view bytes, const Bl
 }
 }
 
-std::optional<ExrGlance> glance_at_exr(const std::filesystem::path& path) {
+std::optional<ExrSummary> exr_summary(const std::filesystem::path& path) {
     const ReadFile file(path);
     if (!file.is_there()) return {};
     std::vector<char> buffer;
     for (size_t length = first_read;; length = longest_header) {
         buffer.resize(length);
-        ExrGlance glance;
+        ExrSummary summary;
         const std::string_view bytes = file.read(0, buffer);
-        if (const auto table = read_header(bytes, path.string(), glance)) {
-            if (ends_with_last_block(file, bytes, *table)) return glance;
+        if (const auto table = read_header(bytes, path.string(), summary)) {
+            if (ends_with_last_block(file, bytes, *table)) return summary;
             refuse(path.string(), "truncated: it ends before the end of its last block");
         }
         if (bytes.size() == file.bytes()) refuse(path.string(), "truncated: it ends within its header");

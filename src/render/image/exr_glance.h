@@ -6,12 +6,12 @@
 #include <string>
 
 namespace tyndall {
-struct ExrGlance {
+struct ExrSummary {
     std::string frame, part, plan_hash; // imageCounter, tyndall:part and tyndall:planHash; empty where there is none
     bool partial = false;               // tyndall:partial: merged while parts were missing
 };
 
 // None if there is no file. Throws Error (unreadable, refused) if it is not a scanline EXR or is truncated: it has to
 // end with its last block.
-std::optional<ExrGlance> glance_at_exr(const std::filesystem::path& file);
+std::optional<ExrSummary> exr_summary(const std::filesystem::path& file);
 }

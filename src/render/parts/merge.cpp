@@ -41,7 +41,7 @@ void check_alike(const PartFile& part, const PartFile& first) {
         refuse(file, formatted("belongs to frame %d, but %s to frame %d", part.frame, other.c_str(), first.frame));
     const FramePart &a = part.part, &b = first.part;
     if (part.hash != first.hash || a.display != b.display || a.low != b.low || a.size != b.size ||
-        a.numbers != b.numbers || a.leaves != b.leaves || a.lights.names != b.lights.names)
+        a.stride != b.stride || a.leaves != b.leaves || a.lights.names != b.lights.names)
         refuse(file, "was rendered from different inputs than " + other);
 }
 }
@@ -149,7 +149,8 @@ MergedFrame merge_frame(std::span<const PartFile> files, const PartGroups& group
         add_post(*plan.plan.mode, view, frame.snapshot, plan.plan.settings, merged.layers, merged.stats);
         merged.stats.noise.reset();
     }
-    judge_planned(planned, *plan.plan.mode, view, frame.snapshot, plan.plan.settings, merged.layers, {}, merged.stats);
+    add_planned_error(planned, *plan.plan.mode, view, frame.snapshot, plan.plan.settings, merged.layers, {},
+                      merged.stats);
     if (first.part.covered) std::ranges::fill(merged.layers.alpha.pixels, 1.0f);
     merged.provenance = provenance_of(scene, request, plan.plan, view, hash, merged.stats);
     note_gap(groups, merged.provenance);

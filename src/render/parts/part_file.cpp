@@ -102,7 +102,7 @@ void check_sums(std::span<const float> sums, const SumNode& node, const FramePar
     const int64_t size = int64_t{1} << node.level, leaves = part.leaves;
     const auto fewest = static_cast<float>(every_pixel ? section.fewest * size / leaves : 0);
     const auto most = static_cast<float>((section.most * size + leaves - 1) / leaves);
-    for (size_t at = 0; at < sums.size(); at += part.numbers) {
+    for (size_t at = 0; at < sums.size(); at += part.stride) {
         const float kept = sums[at + kept_sum], taken = sums[at + taken_sum];
         const bool whole = std::floor(kept) == kept && std::floor(taken) == taken;
         if (!(whole && kept >= 0 && kept <= taken && taken >= fewest && taken <= most))
@@ -117,8 +117,8 @@ void find_sums(const ExrFile& exr, const std::string& file, FramePart& part) {
     if (leaves / part.leaves > static_cast<int64_t>(exr.channels.size()))
         refuse(file, "damaged: it has fewer channels than tyndall:partRange requires");
     part.nodes = nodes_of(part.range, part.leaves);
-    part.numbers = fixed_sums;
-    while (exr.channel(channel_name(part.nodes[0], part.numbers))) part.numbers += 3;
+    part.stride = fixed_sums;
+    while (exr.channel(channel_name(part.nodes[0], part.stride))) part.stride += 3;
 }
 
 // Reads the sums of the rows in `exr`.
@@ -126,10 +126,10 @@ void read_sums(const ExrFile& exr, const std::string& file, const SectionSamples
     part.depth = channel_of(exr, "Z", file), part.off_center = channel_of(exr, "offset", file);
     part.size = part.depth.size;
     for (const SumNode& node : part.nodes) {
-        std::vector<float>& sums = part.sums.emplace_back(part.depth.pixels.size() * part.numbers);
-        for (size_t k = 0; k < part.numbers; ++k) {
+        std::vector<float>& sums = part.sums.emplace_back(part.depth.pixels.size() * part.stride);
+        for (size_t k = 0; k < part.stride; ++k) {
             const Image<float>& values = channel_of(exr, channel_name(node, k), file);
-            for (size_t i = 0; i < values.pixels.size(); ++i) sums[i * part.numbers + k] = values.pixels[i];
+            for (size_t i = 0; i < values.pixels.size(); ++i) sums[i * part.stride + k] = values.pixels[i];
         }
         check_sums(sums, node, part, section, file);
     }
@@ -155,8 +155,8 @@ void write_part(const std::filesystem::path& file, const FramePart& part, Proven
     add_attributes(part, grouping, file, provenance.attributes);
     std::vector<ExrChannel> channels;
     for (size_t n = 0; n < part.nodes.size(); ++n)
-        for (size_t k = 0; k < part.numbers; ++k)
-            channels.push_back({channel_name(part.nodes[n], k), part.sums[n].data() + k, part.numbers, true});
+        for (size_t k = 0; k < part.stride; ++k)
+            channels.push_back({channel_name(part.nodes[n], k), part.sums[n].data() + k, part.stride, true});
     channels.push_back({"Z", part.depth.pixels.data(), 1, true});
     channels.push_back({"offset", part.off_center.pixels.data(), 1, true});
     const bool finished = part.finished.empty();

@@ -195,7 +195,7 @@ SavedPlan load_plan(const std::filesystem::path& file) {
                "made by another build of this version, whose results may differ: plan again, or use that build");
     for (const Json& input : json.find("inputs")->items) plan.inputs.push_back(input.string);
     plan.request.grouping.plan_hash = content_hash(text);
-    plan.plan = plan_as_asked(plan.request);
+    plan.plan = requested_plan(plan.request);
     plan.plan.certificate = json.string_or("certificate", "");
     return plan;
 }

@@ -22,9 +22,9 @@ struct SavedPlan {
 // A single group has the noise of one sequence, which its sections overestimate (1.9 times in window at 64 samples).
 // Independent groups show their noise correctly, as a target requires, but have more: two 1.4 times the variance of
 // one, eight 2.4 times.
-inline constexpr int usual_groups = 1, groups_for_target = 8, max_groups = 64;
+inline constexpr int default_groups = 1, groups_for_target = 8, max_groups = 64;
 int leaves_for(int sections, double samples);
-Grouping grouping_of(int& samples, int groups = usual_groups);
+Grouping grouping_of(int& samples, int groups = default_groups);
 
 // Identifies this build: plans are only rendered by the build that made them.
 std::string build_name();

@@ -82,7 +82,7 @@ std::vector<CacheCost> prepare_for_parts(const Scene& scene, const SavedPlan& pl
     inputs.known.clear(), inputs.recorded_in = folder->folder;
     const double start = steady_seconds();
     hash_fog(scene, request, frame, inputs);
-    if (!inputs.known.empty()) note_cost(folder.get(), "hashing volumes", steady_seconds() - start, CostKind::cached);
+    if (!inputs.known.empty()) record_cost(folder.get(), "hashing volumes", steady_seconds() - start, CostKind::cached);
 
     // Shares nothing with other frames: data in common is looked up in the folder, and so listed in every manifest.
     const Snapshot snapshot = make_snapshot(scene, moments_of(scene, request, frame), nullptr, request.missing, folder);

@@ -71,7 +71,7 @@ std::optional<double> exposure_for(std::vector<float> luminances) {
     return std::round(10 * std::clamp(stops, -64.0, 64.0)) / 10;
 }
 
-bool measures_exposure(const Scene& scene, const RenderRequest& request) {
+bool needs_auto_exposure(const Scene& scene, const RenderRequest& request) {
     return request.automatic_exposure || (!request.exposure && !scene.own_exposure);
 }
 
@@ -99,7 +99,7 @@ int orders_of(const Mode& mode, const Settings& settings) {
 }
 
 Display display_of(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, int frame) {
-    if (measures_exposure(scene, request)) return {plan.exposure.value_or(0.0), request.view_transform};
+    if (needs_auto_exposure(scene, request)) return {plan.exposure.value_or(0.0), request.view_transform};
     return {request.exposure.value_or(scene.exposure.at(moment_of(scene, frame).seconds)), request.view_transform};
 }
 }

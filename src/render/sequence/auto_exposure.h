@@ -14,7 +14,7 @@ struct Snapshot;
 std::optional<double> exposure_for(std::vector<float> luminances);
 
 // Whether PNGs of the request need automatic_exposure().
-bool measures_exposure(const Scene& scene, const RenderRequest& request);
+bool needs_auto_exposure(const Scene& scene, const RenderRequest& request);
 
 // One exposure for all frames of a scene: what the brightest of its first, middle and last frame needs, measured on
 // small images with one ray per pixel. Depends on scene, camera, aspect ratio, scattering orders and artistic settings,

@@ -75,7 +75,7 @@ void check_job(const Scene& scene, const RenderRequest& request, const Mode& mod
     check_outputs(scene, request);
 }
 
-RenderPlan plan_as_asked(const RenderRequest& request) {
+RenderPlan requested_plan(const RenderRequest& request) {
     return {&find_mode(request.mode), request.settings, {}, {}, {}, {}};
 }
 
@@ -130,12 +130,11 @@ FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int fr
     if (!changes_while_open(scene, camera, shutter)) return frame_moments(scene, frame, shutter, 1);
     const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
     // A mode that is not chosen yet may be one that remembers.
-    const auto keeps_none = [&](const Mode& mode) { return mode.name == request.mode && !mode.remembers; };
-    const bool keeps_pictures = std::ranges::none_of(modes(), keeps_none);
+    const auto keeps_none = [&](const Mode& mode) { return mode.name == request.mode && !mode.uses_history; };
+    const bool keeps_images = std::ranges::none_of(modes(), keeps_none);
     const int finer = request.target_error > 0 ? 2 : 1; // the error left by half of them is part of the target error
-    const int count = request.time_samples > 0
-                          ? request.time_samples
-                          : usual_moments(scene, camera, size, frame, shutter, keeps_pictures, finer);
+    const int count = request.time_samples > 0 ? request.time_samples
+                                               : auto_moments(scene, camera, size, frame, shutter, keeps_images, finer);
     return frame_moments(scene, frame, shutter, count);
 }
 
@@ -145,7 +144,7 @@ std::shared_ptr<const OpenShutter> open_shutter(const Scene& scene, const Render
     if (moments.moments.empty()) return nullptr;
     auto shutter = std::make_shared<OpenShutter>();
     for (const Moment& moment : moments.moments) shutter->cameras.push_back(camera_at(scene, camera, moment.seconds));
-    shutter->motion = motion_on_picture(scene, camera, size, frame, shutter_of(scene, request));
+    shutter->motion = image_motion(scene, camera, size, frame, shutter_of(scene, request));
     return shutter;
 }
 }

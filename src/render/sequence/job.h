@@ -85,7 +85,7 @@ struct RenderPlan {
 };
 
 // The requested mode and settings. Throws Error (usage) for a mode that is not in the table.
-RenderPlan plan_as_asked(const RenderRequest& request);
+RenderPlan requested_plan(const RenderRequest& request);
 
 // Whether a target error or a time budget decides the number of samples.
 bool has_goal(const RenderRequest& request);

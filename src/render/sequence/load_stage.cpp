@@ -14,7 +14,7 @@
 
 namespace tyndall {
 namespace {
-WantedFrame wanted_frame(const Pipeline& pipeline, const Work& work) {
+ExpectedFrame expected_frame(const Pipeline& pipeline, const FrameJob& work) {
     const View& view = work.view;
     const bool cropped = view.crop_low != view.crop_high;
     return {view.size, cropped ? view.crop_low : ivec2(0), cropped ? view.crop_high - view.crop_low : view.size,
@@ -22,7 +22,7 @@ WantedFrame wanted_frame(const Pipeline& pipeline, const Work& work) {
 }
 
 // Keeps a frame that is already finished; its PNG is written again, since it has no hash.
-bool keep(Pipeline& pipeline, Work& work) {
+bool keep(Pipeline& pipeline, FrameJob& work) {
     std::string why;
     if (is_part(pipeline.request.grouping)) {
         work.report.kept = is_finished_part(work.report.file, work.hash, pipeline.request.grouping, why);
@@ -30,12 +30,12 @@ bool keep(Pipeline& pipeline, Work& work) {
         if (work.report.kept) say(pipeline, work, "kept " + work.report.file);
         return work.report.kept;
     }
-    const std::optional<ExrFile> exr = finished_frame(work.report.file, wanted_frame(pipeline, work), why);
+    const std::optional<ExrFile> exr = finished_frame(work.report.file, expected_frame(pipeline, work), why);
     if (!exr) {
         if (!why.empty()) say(pipeline, work, "rendering again: " + why);
         return false;
     }
-    if (pipeline.request.png) write_picture(pipeline, color_of(*exr), work.report);
+    if (pipeline.request.png) write_frame_png(pipeline, color_of(*exr), work.report);
     work.report.kept = true;
     read_noise(exr->attributes, work.report.stats);
     say(pipeline, work, "kept " + work.report.file);
@@ -61,10 +61,10 @@ void report_notes(Pipeline& pipeline, const Snapshot& snapshot) {
 
 }
 
-std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous) {
+std::optional<FrameJob> load_next(Pipeline& pipeline, const Snapshot* previous) {
     while (pipeline.next < pipeline.request.frames.size() && !pipeline.cancel) {
         const double start = steady_seconds();
-        Work work;
+        FrameJob work;
         work.index = pipeline.next++;
         const int frame = work.report.frame = pipeline.request.frames[work.index];
         work.report.file = frame_name(pipeline.request.output, frame);

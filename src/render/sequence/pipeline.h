@@ -11,7 +11,7 @@
 
 namespace tyndall {
 // A frame ready to render, and after that ready to write.
-struct Work {
+struct FrameJob {
     size_t index = 0; // in the request's frames
     FrameReport report;
     std::string hash;
@@ -40,14 +40,14 @@ struct Pipeline {
 };
 
 // Loads the next frame that has to be rendered; reports the ones kept on the way.
-std::optional<Work> load_next(Pipeline& pipeline, const Snapshot* previous);
-void render(Pipeline& pipeline, Work& work);
+std::optional<FrameJob> load_next(Pipeline& pipeline, const Snapshot* previous);
+void render(Pipeline& pipeline, FrameJob& work);
 
-void say(const Pipeline& pipeline, const Work& work, const std::string& what);
-void report_frame(Pipeline& pipeline, const Work& work);
+void say(const Pipeline& pipeline, const FrameJob& work, const std::string& what);
+void report_frame(Pipeline& pipeline, const FrameJob& work);
 
 // Writes the PNG next to a frame's EXR.
-void write_picture(const Pipeline& pipeline, const Image<vec3>& color, FrameReport& report);
+void write_frame_png(const Pipeline& pipeline, const Image<vec3>& color, FrameReport& report);
 
 // Throws the error again, with the frame in front of its location and the reason unchanged.
 [[noreturn]] void fail_in_frame(int frame, const Error& error);

@@ -48,7 +48,8 @@ std::string light_text(const Scene& scene, double seconds) {
 }
 
 std::string lens_text(const Lens& lens) {
-    return number(lens.radius) + " " + number(lens.focus) + " " + std::to_string(lens.blades) + " " + number(lens.turn);
+    return number(lens.radius) + " " + number(lens.focus) + " " + std::to_string(lens.blades) + " " +
+           number(lens.rotation);
 }
 
 std::string camera_text(const Camera& camera) {

@@ -35,10 +35,10 @@ double seconds_left(const Pipeline& pipeline, const View& view) {
 // Runs the mode on the frames before this one, so that a frame depends only on the scene and its number. Before the
 // scene's first frame, time stands still. Each frame shares data with the one before; the first shares what the
 // sequence's previous frame kept.
-void warm_up(const Pipeline& pipeline, Work& work, History& history) {
+void warm_up(const Pipeline& pipeline, FrameJob& work, History& history) {
     const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
     Snapshot previous = work.snapshot;
-    previous.cache = work.snapshot.cache_before;
+    previous.cache = work.snapshot.previous_cache;
     for (int back = pipeline.request.history; back > 0 && !pipeline.cancel; --back) {
         const int earlier = std::max(frame - back, first);
         Snapshot snapshot =
@@ -48,11 +48,11 @@ void warm_up(const Pipeline& pipeline, Work& work, History& history) {
         pipeline.plan.mode->prepare(view, snapshot, pipeline.plan.settings, &history);
         previous = std::move(snapshot);
     }
-    work.snapshot.cache_before = previous.cache;
+    work.snapshot.previous_cache = previous.cache;
 }
 
 // Reports the predicted time of a frame, if it is long.
-void say_forecast(const Pipeline& pipeline, const Work& work, double seconds) {
+void say_forecast(const Pipeline& pipeline, const FrameJob& work, double seconds) {
     constexpr double long_work = 10;
     if (seconds < long_work) return;
     if (seconds == infinity) return say(pipeline, work, "cannot reach the target error: it may be too small");
@@ -65,7 +65,7 @@ bool missed_by_plan(const RenderPlan& plan, const RenderRequest& request, const 
            stats.error()->bound > request.target_error;
 }
 
-void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
+void render_by_main_mode(Pipeline& pipeline, FrameJob& work, FrameOptions options) {
     const RenderPlan& plan = pipeline.plan;
     say(pipeline, work,
         std::string(plan.mode->name) + " misses the target error; rendering again with " +
@@ -82,7 +82,7 @@ void render_by_main_mode(Pipeline& pipeline, Work& work, FrameOptions options) {
 }
 
 // Renders the requested part of the frame's samples, continuing from its last checkpoint.
-void render_own_part(const Pipeline& pipeline, const FrameOptions& options, Work& work) {
+void render_own_part(const Pipeline& pipeline, const FrameOptions& options, FrameJob& work) {
     const RenderRequest& request = pipeline.request;
     const Mode& mode = *pipeline.plan.mode;
     const std::filesystem::path file = checkpoint_name(work.report.file);
@@ -105,7 +105,7 @@ void render_own_part(const Pipeline& pipeline, const FrameOptions& options, Work
 }
 }
 
-void render(Pipeline& pipeline, Work& work) {
+void render(Pipeline& pipeline, FrameJob& work) {
     const RenderRequest& request = pipeline.request;
     const RenderPlan& plan = pipeline.plan;
     const double start = steady_seconds();
@@ -131,8 +131,8 @@ void render(Pipeline& pipeline, Work& work) {
         else
             work.layers = render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
         if (!is_part(request.grouping))
-            judge_planned(request.grouping.error, *plan.mode, work.view, work.snapshot, plan.settings, work.layers,
-                          options, stats);
+            add_planned_error(request.grouping.error, *plan.mode, work.view, work.snapshot, plan.settings, work.layers,
+                              options, stats);
         if (missed_by_plan(plan, request, stats)) render_by_main_mode(pipeline, work, options);
         if (request.files) check_unchanged(*request.files);
     } catch (const Error& error) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace tyndall {
-struct WantedFrame {
+struct ExpectedFrame {
     ivec2 display{0}, low{0}, size{0};
     std::vector<std::string> channels; // sorted
     std::string hash;
@@ -15,5 +15,6 @@ struct WantedFrame {
 
 // Reads the frame if every pixel decodes and everything is as wanted; otherwise none, with the reason in `why` (empty:
 // there is no file).
-std::optional<ExrFile> finished_frame(const std::filesystem::path& file, const WantedFrame& wanted, std::string& why);
+std::optional<ExrFile> finished_frame(const std::filesystem::path& file, const ExpectedFrame& expected,
+                                      std::string& why);
 }

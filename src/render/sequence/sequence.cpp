@@ -21,7 +21,7 @@
 #include <utility>
 
 namespace tyndall {
-void write_picture(const Pipeline& pipeline, const Image<vec3>& color, FrameReport& report) {
+void write_frame_png(const Pipeline& pipeline, const Image<vec3>& color, FrameReport& report) {
     const Display display = display_of(pipeline.scene, pipeline.request, pipeline.plan, report.frame);
     write_png(png_name(report.file), color, display);
     report.exposure = display.exposure;
@@ -34,12 +34,12 @@ void fail_in_frame(int frame, const Error& error) {
     fail(error.code, name + ": " + text.substr(0, split), text.substr(split + 2));
 }
 
-void say(const Pipeline& pipeline, const Work& work, const std::string& what) {
+void say(const Pipeline& pipeline, const FrameJob& work, const std::string& what) {
     pipeline.progress.line("frame " + std::to_string(work.report.frame) + " (" + std::to_string(work.index + 1) + "/" +
                            std::to_string(pipeline.request.frames.size()) + ") " + what);
 }
 
-void report_frame(Pipeline& pipeline, const Work& work) {
+void report_frame(Pipeline& pipeline, const FrameJob& work) {
     const std::scoped_lock lock(pipeline.reporting);
     pipeline.report.non_finite += work.report.stats.non_finite;
     pipeline.report.frames.push_back(work.report);
@@ -63,7 +63,7 @@ std::string error_text(const FrameStats& stats, const RenderRequest& request) {
     return text;
 }
 
-void write(Pipeline& pipeline, Work& work) {
+void write(Pipeline& pipeline, FrameJob& work) {
     const RenderRequest& request = pipeline.request;
     const double start = steady_seconds();
     FrameReport& report = work.report;
@@ -77,7 +77,7 @@ void write(Pipeline& pipeline, Work& work) {
         } else {
             write_exr(report.file, work.layers, provenance, request.exr);
         }
-        if (request.png) write_picture(pipeline, stored_color(work.layers, request.exr), report);
+        if (request.png) write_frame_png(pipeline, stored_color(work.layers, request.exr), report);
     } catch (const Error& error) {
         fail_in_frame(report.frame, error);
     }
@@ -101,15 +101,15 @@ template<class Body> std::exception_ptr caught(const Body& body) {
 }
 
 void run(Pipeline& pipeline) {
-    std::optional<Work> current = load_next(pipeline, nullptr), rendered;
+    std::optional<FrameJob> current = load_next(pipeline, nullptr), rendered;
     while (current) {
-        std::optional<Work> next;
+        std::optional<FrameJob> next;
         std::exception_ptr render_error, write_error, load_error;
-        run_together({[&] { render_error = caught([&] { render(pipeline, *current); }); },
-                      [&] { load_error = caught([&] { next = load_next(pipeline, &current->snapshot); }); },
-                      [&] {
-                          if (rendered) write_error = caught([&] { write(pipeline, *rendered); });
-                      }});
+        parallel_invoke({[&] { render_error = caught([&] { render(pipeline, *current); }); },
+                         [&] { load_error = caught([&] { next = load_next(pipeline, &current->snapshot); }); },
+                         [&] {
+                             if (rendered) write_error = caught([&] { write(pipeline, *rendered); });
+                         }});
         if (write_error) std::rethrow_exception(write_error);
         if (render_error && pipeline.cancel) return;
         if (render_error) std::rethrow_exception(render_error);
@@ -152,7 +152,7 @@ RenderReport render_sequence(const Scene& scene, const RenderRequest& request, c
     check_job(scene, request, *asked.mode);
     flush_denormals();
     RenderPlan plan = asked;
-    if (request.png && !plan.exposure && measures_exposure(scene, request))
+    if (request.png && !plan.exposure && needs_auto_exposure(scene, request))
         plan.exposure = automatic_exposure(scene, request, orders_of(*asked.mode, request.settings),
                                            first ? &first->snapshot : nullptr);
 

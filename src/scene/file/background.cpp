@@ -13,9 +13,9 @@ void read_image(const Field& image, Scene& scene, Background& map) {
     const std::string bytes = read_file(path, largest_file);
     add_input(scene, path, bytes);
     std::string note;
-    const std::string place = image.place() + ": " + path.filename().string();
-    map.image = std::make_shared<Image<vec3>>(decode_picture(bytes, place, note));
-    if (!note.empty()) scene.warnings.push_back(place + ": " + note);
+    const std::string location = image.location() + ": " + path.filename().string();
+    map.image = std::make_shared<Image<vec3>>(decode_image(bytes, location, note));
+    if (!note.empty()) scene.warnings.push_back(location + ": " + note);
 }
 
 // Fields of image backgrounds only.

@@ -27,7 +27,7 @@ void read_lens(const Field& field, CameraSource& camera) {
     camera.aperture = keyed_number(aperture);
     if (focus) camera.focus = keyed_number(focus);
     if (blades) camera.blades = static_cast<int>(read_number(blades));
-    if (turn) camera.blade_turn = keyed_degrees(turn);
+    if (turn) camera.blade_rotation = keyed_degrees(turn);
 }
 
 // A named curve, or transmissions at equally spaced times.
@@ -63,8 +63,8 @@ CameraSource camera_source(const Field& field, std::string_view default_name, dv
         if (!field.member(key)) refuse(field, "missing key " + quote_json(key));
     camera.name = field.json->string_or("name", default_name);
     camera.entry = field.pointer;
-    camera.position = keyed_place(field.member("position"), origin);
-    camera.target = keyed_place(field.member("target"), origin);
+    camera.position = keyed_position(field.member("position"), origin);
+    camera.target = keyed_position(field.member("target"), origin);
     if (const Field up = field.member("up")) camera.up = keyed_vector(up);
     check_aim(camera, field);
 

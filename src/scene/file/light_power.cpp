@@ -70,10 +70,10 @@ void read_profile(const Field& field, Scene& scene, LightSource& light) {
     const Field file = ies.member("file"), multiplier = ies.member("multiplier");
     const std::filesystem::path path = named_file(file, scene);
     std::string bytes;
-    with_place(file, [&] { bytes = read_file(path, largest_ies_file); });
+    with_location(file, [&] { bytes = read_file(path, largest_ies_file); });
     add_input(scene, path, bytes);
     light.profile = read_profile(bytes, path.string(), scene);
-    if (const Field rotate = ies.member("rotate")) light.profile_turn = keyed_degrees(rotate);
+    if (const Field rotate = ies.member("rotate")) light.profile_rotation = keyed_degrees(rotate);
     if (multiplier && field.member("intensity"))
         refuse(multiplier, "cannot be combined with intensity: either the file or the scene sets the brightness");
     light.unit = LightUnit::profile, light.intensity = 1.0f;
@@ -86,9 +86,9 @@ void read_gobo(const Field& field, Scene& scene, LightSource& light) {
     const Field image = gobo.member("image");
     GoboSource source;
     source.space = gobo.json->string_or("color_space", "srgb") == "linear" ? ColorSpace::linear : ColorSpace::srgb;
-    if (const Field rotate = gobo.member("rotate")) source.turn = keyed_degrees(rotate);
+    if (const Field rotate = gobo.member("rotate")) source.rotation = keyed_degrees(rotate);
     if (const Field scale = gobo.member("scale")) source.scale = keyed_number(scale);
-    with_place(image, [&] { source.sequence = find_sequence(image.json->string, scene.file.parent_path()); });
+    with_location(image, [&] { source.sequence = find_sequence(image.json->string, scene.file.parent_path()); });
     const Field sequence = gobo.member("sequence");
     if (!source.sequence.files.empty()) {
         source.sequence.mode = sequence_mode_named(sequence ? sequence.json->string_or("mode", "hold") : "hold");
@@ -99,10 +99,10 @@ void read_gobo(const Field& field, Scene& scene, LightSource& light) {
     if (sequence) refuse(sequence, "is for numbered images only (gobo.####.png)");
     const std::filesystem::path path = source.sequence.pattern;
     std::string bytes, note;
-    with_place(image, [&] { bytes = read_file(path, largest_gobo_file); });
+    with_location(image, [&] { bytes = read_file(path, largest_gobo_file); });
     add_input(scene, path, bytes);
-    source.still = make_gobo(bytes, source.space, image.place(), note);
-    if (!note.empty()) warn(scene, image.place() + ": " + note);
+    source.still = make_gobo(bytes, source.space, image.location(), note);
+    if (!note.empty()) warn(scene, image.location() + ": " + note);
     light.gobo = source;
 }
 }

@@ -51,10 +51,10 @@ void read_placement(const Field& field, dvec3 origin, LightSource& light) {
     if (is_distant(light) && target && !position)
         refuse(target, "needs a position to aim from; a sun can have a direction instead");
     light.node = -1;
-    if (position) light.position = keyed_place(position, origin);
+    if (position) light.position = keyed_position(position, origin);
     if (direction) light.direction = keyed_vector(direction);
     light.target.reset();
-    if (target) light.target = keyed_place(target, origin);
+    if (target) light.target = keyed_position(target, origin);
     if (target) light.direction = difference(*light.target, light.position, target);
     for (const vec3 value : light.direction.values)
         if (glm::dot(value, value) == 0) refuse(target ? target : direction, "leaves the light without a direction");
@@ -171,8 +171,8 @@ void read_billboards(const Field& root, Scene& scene) {
         card.light = field.member("light").json->string;
         if (!find(scene, card.light))
             refuse(field.member("light"), unknown_name("light", card.light, light_names(scene)));
-        card.from = vec3(read_place(field.member("from")) - scene.origin);
-        card.to = vec3(read_place(field.member("to")) - scene.origin);
+        card.from = vec3(read_position(field.member("from")) - scene.origin);
+        card.to = vec3(read_position(field.member("to")) - scene.origin);
         if (card.from == card.to) refuse(field.member("to"), "is the same point as from");
         if (const Field width = field.member("width_from")) card.width_from = read_number(width);
         if (const Field width = field.member("width_to")) card.width_to = read_number(width);

@@ -17,7 +17,7 @@ MediumKind kind_named(std::string_view name) {
 
 void read_transform(const Field& field, dvec3 origin, MediumSource& medium) {
     const Field translate = field.member("translate");
-    medium.translation = translate ? keyed_place(translate, origin) : Keyed<vec3>(vec3(dvec3(0) - origin));
+    medium.translation = translate ? keyed_position(translate, origin) : Keyed<vec3>(vec3(dvec3(0) - origin));
     if (const Field rotate = field.member("rotate"))
         medium.rotate = keyed_vector(rotate), medium.rotation = rotation_of(medium.rotate);
     const Field scale = field.member("scale");
@@ -31,7 +31,8 @@ void read_transform(const Field& field, dvec3 origin, MediumSource& medium) {
 void read_bounds(const Field& field, dvec3 origin, MediumSource& medium) {
     const Field bounds = field.member("bounds");
     if (!bounds) return;
-    medium.bounds = {vec3(read_place(bounds.member("low")) - origin), vec3(read_place(bounds.member("high")) - origin)};
+    medium.bounds = {vec3(read_position(bounds.member("low")) - origin),
+                     vec3(read_position(bounds.member("high")) - origin)};
     for (int axis = 0; axis < 3; ++axis)
         if (medium.bounds.low[axis] >= medium.bounds.high[axis])
             refuse(bounds.member("high").item(axis), "must be greater than low");
@@ -101,7 +102,7 @@ bool read_metadata(const std::filesystem::path& path, MediumSource& medium) {
 
 void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
     const Field file = field.member("file");
-    with_place(file, [&] { medium.sequence = find_sequence(file.json->string, scene.file.parent_path()); });
+    with_location(file, [&] { medium.sequence = find_sequence(file.json->string, scene.file.parent_path()); });
     medium.density_grid = field.json->string_or("grid", "");
     if (const Field sequence = field.member("sequence")) {
         medium.sequence.mode = sequence_mode_named(sequence.json->string_or("mode", "hold"));
@@ -117,9 +118,9 @@ void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
     const int first = medium.sequence.files.empty() ? 0 : medium.sequence.files.front() - medium.sequence.offset;
     const auto path = sequence_file(medium.sequence, first, MissingFrame::hold);
     bool known = false;
-    if (path) with_place(file, [&] { known = read_metadata(*path, medium); });
+    if (path) with_location(file, [&] { known = read_metadata(*path, medium); });
     if (!known && !field.member("extinction"))
-        warn(scene, file.place() + ": neither the scene nor the file states an extinction; 0.1 per metre is used");
+        warn(scene, file.location() + ": neither the scene nor the file states an extinction; 0.1 per metre is used");
 }
 
 MediumSource medium_source(const Field& field, size_t index, Scene& scene) {

@@ -44,7 +44,7 @@ GridSource grid_source(const Field& field, const char* usual, const MediumSource
     source.grids = grid_names(field.member("grid"), usual);
     source.map = value_map(field);
     if (const Field file = field.member("file"))
-        with_place(file, [&] {
+        with_location(file, [&] {
             const FileSequence other = find_sequence(file.json->string, scene.file.parent_path());
             source.sequence.pattern = other.pattern, source.sequence.files = other.files;
         });
@@ -86,7 +86,7 @@ BlackbodySource blackbody_source(const Field& field, const MediumSource& medium,
     source.by_absorption = source.kind == BlackbodyKind::pbrt || (kirchhoff && kirchhoff.json->boolean);
     const bool absorbs = std::ranges::any_of(medium.extinction.values, [](float value) { return value > 0; });
     if (source.by_absorption && !absorbs)
-        warn(scene, field.place() + ": emission is proportional to absorption, which is 0 because extinction is 0");
+        warn(scene, field.location() + ": emission is proportional to absorption, which is 0 because extinction is 0");
     return source;
 }
 
@@ -94,7 +94,7 @@ BlackbodySource blackbody_source(const Field& field, const MediumSource& medium,
 void check_recipe(const Field& field, const Field& blackbody, const FogRecipe& recipe, Scene& scene) {
     if (blackbody && !recipe.fire) refuse(blackbody, "needs a recipe with a \"fire\"");
     if (!blackbody && recipe.fire)
-        warn(scene, field.place() + ": its fire gives no light without \"blackbody\": {\"convention\": \"kelvin\"}");
+        warn(scene, field.location() + ": its fire gives no light without \"blackbody\": {\"convention\": \"kelvin\"}");
 }
 
 // Refuses members that mean nothing without another member.

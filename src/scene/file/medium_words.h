@@ -11,5 +11,5 @@ namespace tyndall {
 std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info);
 
 // Extinction at which 2 % of the light passes along the longest path through fog of maximum density, 1/m.
-float usual_extinction(const VdbGridInfo& fog);
+float default_extinction(const VdbGridInfo& fog);
 }

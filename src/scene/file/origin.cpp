@@ -10,7 +10,7 @@ constexpr double far_out = 64; // smallest ratio of distance from the world's or
 
 // What the camera views: its position and size.
 struct Sight {
-    dvec3 place;
+    dvec3 location;
     double size;
 };
 
@@ -30,8 +30,8 @@ Field camera_field(const Field& root) {
 }
 
 Sight sight_of(const Field& camera) {
-    const dvec3 position = read_place(camera.member("position"));
-    return {position, glm::length(read_place(camera.member("target")) - position)};
+    const dvec3 position = read_position(camera.member("position"));
+    return {position, glm::length(read_position(camera.member("target")) - position)};
 }
 
 std::optional<Sight> sight_of(const Field& root, const Scene& scene) {
@@ -50,11 +50,11 @@ dvec3 far_origin(const Field& root, const Scene& scene) {
     const Field camera = camera_field(root);
     const std::optional<Sight> sight = camera ? sight_of(camera) : sight_of(root, scene);
     if (!sight || !(sight->size > 0)) return dvec3(0);
-    const dvec3 away = glm::abs(sight->place);
+    const dvec3 away = glm::abs(sight->location);
     if (!(std::max({away.x, away.y, away.z}) > far_out * sight->size)) return dvec3(0);
 
     // A multiple of a power of two, so that adding it back is exact.
     const double step = std::exp2(std::ceil(std::log2(sight->size)));
-    return glm::round(sight->place / step) * step;
+    return glm::round(sight->location / step) * step;
 }
 }

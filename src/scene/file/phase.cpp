@@ -53,7 +53,7 @@ std::vector<double> stated_numbers(const Field& field, std::string_view key, Sce
     if (file) {
         const std::filesystem::path path = named_file(file, scene);
         std::string text;
-        with_place(file, [&] { text = read_file(path, largest_file); });
+        with_location(file, [&] { text = read_file(path, largest_file); });
         add_input(scene, path, text);
         return numbers_of(text, file);
     }
@@ -92,9 +92,9 @@ Phase read_table(const Field& field, Scene& scene) {
     if (!(std::abs(notes.kept - 1) < 0.01))
         refuse(field, "the values vary too fast with the angle; the finest resolution is 0.01 degrees");
     if (std::abs(notes.integral - 1) > hardly_off)
-        warn(scene,
-             field.place() + formatted(": its values integrate to %.6g over the sphere, not to 1; they are normalized",
-                                       notes.integral));
+        warn(scene, field.location() +
+                        formatted(": its values integrate to %.6g over the sphere, not to 1; they are normalized",
+                                  notes.integral));
     return table_phase(PhaseKind::table, std::move(table));
 }
 
@@ -115,11 +115,11 @@ Phase read_series(const Field& field, Scene& scene) {
                                 "early, or its coefficients lack the factor 2 l + 1",
                                 100 * notes.negative));
     if (std::abs(notes.integral - 1) > hardly_off)
-        warn(scene, field.place() +
+        warn(scene, field.location() +
                         formatted(": the first coefficient is %.6g, not 1; all are divided by that", notes.integral));
     if (notes.negative > 1e-6)
         warn(scene,
-             field.place() +
+             field.location() +
                  formatted(": the series is negative at some angles, by %.2g %% of its light; it is clamped to 0 there",
                            100 * notes.negative));
     return table_phase(PhaseKind::legendre, std::move(table));
@@ -157,6 +157,6 @@ void read_phase(const Field& medium_field, MediumSource& medium, Scene& scene) {
     const PhaseTraits& traits = traits_of(medium.phase.kind);
     for (const float value : medium.g.values)
         if (std::abs(value) > traits.max_g)
-            refuse(g ? g : phase, std::string(traits.beyond) + (g ? "" : " (g comes from the fog's file)"));
+            refuse(g ? g : phase, std::string(traits.g_error) + (g ? "" : " (g comes from the fog's file)"));
 }
 }

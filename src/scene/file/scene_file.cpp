@@ -84,11 +84,11 @@ void read_scene_document(const Json& document, Scene& scene, const LoadOptions& 
 
 std::filesystem::path named_file(const Field& field, const Scene& scene) {
     const std::filesystem::path path = scene.file.parent_path() / field.json->string;
-    with_place(field, [&] { check_readable(path); });
+    with_location(field, [&] { check_readable(path); });
     return path;
 }
 
-void with_place(const Field& field, const std::function<void()>& read) { within(field.place(), read); }
+void with_location(const Field& field, const std::function<void()>& read) { within(field.location(), read); }
 
 void warn(Scene& scene, std::string_view text) {
     const std::string line = printable(text, 400);

@@ -47,7 +47,7 @@ void read_gobo(const Field& field, Scene& scene, LightSource& light);
 SequenceMode sequence_mode_named(std::string_view name);
 
 // Runs `read` on a file that `field` names; its errors then name the field as well.
-void with_place(const Field& field, const std::function<void()>& read);
+void with_location(const Field& field, const std::function<void()>& read);
 
 void warn(Scene& scene, std::string_view text); // one line, without duplicates
 void add_input(Scene& scene, const std::filesystem::path& path, std::string_view content); // each file once

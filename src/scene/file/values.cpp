@@ -41,7 +41,7 @@ quat turned(vec3 degrees) {
 double length(const Keyed<vec3>& value) { return static_cast<double>(value.times.back()) - value.times.front(); }
 }
 
-std::string Field::place() const { return json_place(file, pointer); }
+std::string Field::location() const { return json_location(file, pointer); }
 
 Field Field::member(std::string_view key) const {
     const Json* value = json->find(key);
@@ -53,7 +53,7 @@ Field Field::item(size_t index) const {
     return {&json->items[index], file, json_pointer(pointer, index)};
 }
 
-void refuse(const Field& field, std::string_view what) { refuse(field.place(), what); }
+void refuse(const Field& field, std::string_view what) { refuse(field.location(), what); }
 
 float read_number(const Field& field) {
     const float value = static_cast<float>(field.json->number);
@@ -65,11 +65,11 @@ vec3 read_vector(const Field& field) {
     return {read_number(field.item(0)), read_number(field.item(1)), read_number(field.item(2))};
 }
 
-dvec3 read_place(const Field& field) {
-    if (field.json->kind == Json::Kind::object) return read_place(field.member("keys").item(0).item(1));
-    dvec3 place;
-    for (int axis = 0; axis < 3; ++axis) place[axis] = field.item(static_cast<size_t>(axis)).json->number;
-    return place;
+dvec3 read_position(const Field& field) {
+    if (field.json->kind == Json::Kind::object) return read_position(field.member("keys").item(0).item(1));
+    dvec3 location;
+    for (int axis = 0; axis < 3; ++axis) location[axis] = field.item(static_cast<size_t>(axis)).json->number;
+    return location;
 }
 
 vec3 read_color(const Field& field) {
@@ -79,8 +79,8 @@ vec3 read_color(const Field& field) {
 Keyed<float> keyed_number(const Field& field) { return keyed<float>(field, read_number); }
 Keyed<float> keyed_degrees(const Field& field) { return keyed<float>(field, read_degrees); }
 Keyed<vec3> keyed_vector(const Field& field) { return keyed<vec3>(field, read_vector); }
-Keyed<vec3> keyed_place(const Field& field, dvec3 origin) {
-    return keyed<vec3>(field, [&](const Field& place) { return vec3(read_place(place) - origin); });
+Keyed<vec3> keyed_position(const Field& field, dvec3 origin) {
+    return keyed<vec3>(field, [&](const Field& location) { return vec3(read_position(location) - origin); });
 }
 Keyed<vec3> keyed_color(const Field& field) { return keyed<vec3>(field, read_color); }
 

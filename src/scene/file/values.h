@@ -12,7 +12,7 @@ struct Field {
     std::string file, pointer; // "scenes/a.json", "/lights/0"
 
     explicit operator bool() const { return json != nullptr; }
-    std::string place() const;                // "scenes/a.json: /lights/0"
+    std::string location() const;             // "scenes/a.json: /lights/0"
     Field member(std::string_view key) const; // empty when absent
     Field item(size_t index) const;
 };
@@ -21,15 +21,15 @@ struct Field {
 [[noreturn]] void refuse(const Field& field, std::string_view what);
 
 float read_number(const Field& field);
-vec3 read_vector(const Field& field); // [x, y, z]
-dvec3 read_place(const Field& field); // of [x, y, z], or of the first key
-vec3 read_color(const Field& field);  // [r, g, b], or one number for all three
+vec3 read_vector(const Field& field);    // [x, y, z]
+dvec3 read_position(const Field& field); // of [x, y, z], or of the first key
+vec3 read_color(const Field& field);     // [r, g, b], or one number for all three
 inline float read_degrees(const Field& field) { return glm::radians(read_number(field)); }
 
 Keyed<float> keyed_number(const Field& field);
 Keyed<float> keyed_degrees(const Field& field); // to radians
 Keyed<vec3> keyed_vector(const Field& field);
-Keyed<vec3> keyed_place(const Field& field, dvec3 origin); // relative to an origin
+Keyed<vec3> keyed_position(const Field& field, dvec3 origin); // relative to an origin
 Keyed<vec3> keyed_color(const Field& field);
 
 // From degrees about X, then Y, then Z. Rotations between keys are split into small steps, so that turns of more than

@@ -12,7 +12,8 @@ const char* const type_names[] = {"", "SCALAR", "VEC2", "VEC3", "VEC4"};
 const char* view_data(const GltfDocument& document, int view_index, const std::string& pointer) {
     const tinygltf::BufferView& view = document.model.bufferViews[view_index];
     if (const std::string& why = document.lacking[view.buffer]; !why.empty())
-        refuse(document.place(pointer), "needs buffer " + std::to_string(view.buffer) + ", which has no data: " + why);
+        refuse(document.location(pointer),
+               "needs buffer " + std::to_string(view.buffer) + ", which has no data: " + why);
     return document.buffers[view.buffer].data() + view.byteOffset;
 }
 
@@ -64,10 +65,10 @@ void each_element(const GltfDocument& document, const tinygltf::Accessor& access
     std::vector<size_t> places(sparse.count);
     each(sparse.indices.componentType, indices, sparse.count, index_size, 1,
          [&](size_t i, size_t, auto value) { places[i] = static_cast<size_t>(value); });
-    for (const size_t place : places)
-        if (place >= accessor.count)
-            refuse(document.place(pointer), "the sparse accessor replaces element " + std::to_string(place) +
-                                                ", but has only " + std::to_string(accessor.count));
+    for (const size_t location : places)
+        if (location >= accessor.count)
+            refuse(document.location(pointer), "the sparse accessor replaces element " + std::to_string(location) +
+                                                   ", but has only " + std::to_string(accessor.count));
     each(accessor.componentType, values, sparse.count, size, components,
          [&](size_t i, size_t c, auto value) { put(places[i], c, value); });
 }
@@ -86,8 +87,8 @@ std::vector<float> gltf_floats(GltfDocument& document, int index, int components
     const tinygltf::Accessor& accessor = document.model.accessors[index];
     const int has = tinygltf::GetNumComponentsInType(static_cast<uint32_t>(accessor.type));
     if (has != components)
-        refuse(document.place(pointer), "accessor " + std::to_string(index) + " should be of type " +
-                                            (components <= 4 ? type_names[components] : "MAT4"));
+        refuse(document.location(pointer), "accessor " + std::to_string(index) + " should be of type " +
+                                               (components <= 4 ? type_names[components] : "MAT4"));
     const bool scale = accessor.normalized || scaling == Scaling::normalized;
     std::vector<float> values(accessor.count * components);
     each_element(document, accessor, components, pointer, [&](size_t i, size_t c, auto value) {
@@ -101,7 +102,7 @@ std::vector<uint32_t> gltf_integers(GltfDocument& document, int index, const std
     if (accessor.type != TINYGLTF_TYPE_SCALAR || (accessor.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
                                                   accessor.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
                                                   accessor.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
-        refuse(document.place(pointer),
+        refuse(document.location(pointer),
                "accessor " + std::to_string(index) + " should hold unsigned integers (SCALAR)");
     std::vector<uint32_t> values(accessor.count);
     each_element(document, accessor, 1, pointer,

@@ -33,12 +33,12 @@ Samples samples_of(GltfDocument& document, const tinygltf::AnimationSampler& sam
     const size_t has = samples.values.size() / samples.components,
                  needed = samples.times.size() * samples.stride * many;
     if (has != needed)
-        refuse(document.place(pointer + "/output"),
+        refuse(document.location(pointer + "/output"),
                "has " + std::to_string(has) + " elements, but " + std::to_string(needed) + " are needed");
     for (const float value : samples.values)
-        if (!std::isfinite(value)) refuse(document.place(pointer + "/output"), "has a non-finite value");
+        if (!std::isfinite(value)) refuse(document.location(pointer + "/output"), "has a non-finite value");
     for (const float time : samples.times)
-        if (!std::isfinite(time)) refuse(document.place(pointer + "/input"), "has a non-finite time");
+        if (!std::isfinite(time)) refuse(document.location(pointer + "/input"), "has a non-finite time");
     return samples;
 }
 
@@ -54,8 +54,8 @@ template<class T> Keyed<T> keys_of(GltfDocument& document, const Samples& sample
         }
         keys.times.push_back(samples.times[i]);
         for (size_t part = 0; part < samples.stride; ++part) {
-            const size_t place = (i * samples.stride + part) * samples.many + index;
-            keys.values.push_back(element(&samples.values[place * samples.components], T()));
+            const size_t location = (i * samples.stride + part) * samples.many + index;
+            keys.values.push_back(element(&samples.values[location * samples.components], T()));
         }
     }
     return keys;

@@ -47,7 +47,7 @@ struct GltfDocument {
     size_t morphed = 0; // vertices of morph targets
     size_t posed = 0;   // joints and morph targets of instances
 
-    std::string place(std::string_view pointer) const;
+    std::string location(std::string_view pointer) const;
     void warn(std::string_view pointer, std::string_view what);
     void count(const std::string& what, int times = 1) { counts[what] += times; }
 };

@@ -30,10 +30,11 @@ std::vector<std::string> names_in(const GltfDocument& document, const Json& json
     std::vector<std::string> names;
     const Json* array = json.find(list);
     if (!array) return names;
-    if (array->kind != Json::Kind::array) refuse(document.place("/" + std::string(list)), "expected an array of names");
+    if (array->kind != Json::Kind::array)
+        refuse(document.location("/" + std::string(list)), "expected an array of names");
     for (const Json& item : array->items) {
         if (item.kind != Json::Kind::string)
-            refuse(document.place(gltf_pointer(list, names.size())), "expected the name of an extension");
+            refuse(document.location(gltf_pointer(list, names.size())), "expected the name of an extension");
         names.push_back(item.string);
     }
     return names;
@@ -44,17 +45,17 @@ void check_gltf_extensions(GltfDocument& document, const Json& json) {
     const Json& asset = *json.find("asset");
     const std::string version = asset.string_or("version", ""), least = asset.string_or("minVersion", "2.0");
     if (!is_version_2(version))
-        refuse(document.place("/asset/version"), "is " + quote_json(version) + "; only glTF 2.0 can be read");
+        refuse(document.location("/asset/version"), "is " + quote_json(version) + "; only glTF 2.0 can be read");
     if (least != "2.0")
-        refuse(document.place("/asset/minVersion"), "is " + quote_json(least) + "; only glTF 2.0 can be read");
+        refuse(document.location("/asset/minVersion"), "is " + quote_json(least) + "; only glTF 2.0 can be read");
 
     const std::vector<std::string> required = names_in(document, json, "extensionsRequired");
     for (size_t i = 0; i < required.size(); ++i) {
-        const std::string place = document.place(gltf_pointer("extensionsRequired", i)), &name = required[i];
+        const std::string location = document.location(gltf_pointer("extensionsRequired", i)), &name = required[i];
         if (holds(compressed, name))
-            refuse(place, "the meshes are compressed with " + name + ", which cannot be read; export without it");
+            refuse(location, "the meshes are compressed with " + name + ", which cannot be read; export without it");
         if (!holds(read, name) && !only_looks(name))
-            refuse(place, "needs the extension " + name + ", which is not supported");
+            refuse(location, "needs the extension " + name + ", which is not supported");
     }
     for (const std::string& name : names_in(document, json, "extensionsUsed"))
         if (!holds(read, name) && !holds(compressed, name)) document.warn("", "the extension " + name + " is ignored");

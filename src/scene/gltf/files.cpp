@@ -50,7 +50,7 @@ std::string path_problem(std::string_view path) {
 fs::path resolved(const GltfDocument& document, const std::string& uri, const std::string& pointer) {
     const std::string decoded = percent_decoded(uri);
     if (const std::string problem = path_problem(decoded); !problem.empty())
-        refuse(document.place(pointer), "\"" + printable(uri, 100) + "\" " + problem);
+        refuse(document.location(pointer), "\"" + printable(uri, 100) + "\" " + problem);
 
     // Some exporters do not escape percent signs in names.
     std::error_code error;
@@ -59,15 +59,15 @@ fs::path resolved(const GltfDocument& document, const std::string& uri, const st
         path = document.directory / uri;
     const fs::path inside = fs::canonical(document.directory, error);
     const fs::path target = error ? fs::path() : fs::canonical(path, error);
-    if (error) fail(ExitCode::unreadable, document.place(pointer), "\"" + printable(uri, 100) + "\": no such file");
+    if (error) fail(ExitCode::unreadable, document.location(pointer), "\"" + printable(uri, 100) + "\": no such file");
     const auto [end, rest] = std::mismatch(inside.begin(), inside.end(), target.begin(), target.end());
     if (end != inside.end())
-        refuse(document.place(pointer),
+        refuse(document.location(pointer),
                "\"" + printable(uri, 100) + "\" is a link that leads out of the folder of the glTF");
     return target;
 }
 
-std::string base64_decoded(std::string_view text, const std::string& place) {
+std::string base64_decoded(std::string_view text, const std::string& location) {
     static constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::array<int8_t, 256> values;
     values.fill(-1);
@@ -81,19 +81,19 @@ std::string base64_decoded(std::string_view text, const std::string& place) {
     uint32_t bits = 0;
     int count = 0;
     for (const unsigned char c : text) {
-        if (values[c] < 0) refuse(place, "the data URI holds characters that are not base64");
+        if (values[c] < 0) refuse(location, "the data URI holds characters that are not base64");
         bits = bits << 6 | static_cast<uint32_t>(values[c]), count += 6;
         if (count >= 8) bytes += static_cast<char>(bits >> (count -= 8) & 0xff);
     }
     return bytes;
 }
 
-std::string data_uri_bytes(std::string_view uri, const std::string& place) {
+std::string data_uri_bytes(std::string_view uri, const std::string& location) {
     const size_t comma = uri.find(',');
-    if (comma == uri.npos) refuse(place, "the data URI has no comma before its data");
+    if (comma == uri.npos) refuse(location, "the data URI has no comma before its data");
     const std::string_view data = uri.substr(comma + 1);
     if (!uri.substr(0, comma).ends_with(";base64")) return percent_decoded(data);
-    return base64_decoded(data.find('%') == data.npos ? std::string(data) : percent_decoded(data), place);
+    return base64_decoded(data.find('%') == data.npos ? std::string(data) : percent_decoded(data), location);
 }
 
 bool is_data_uri(std::string_view uri) {
@@ -119,7 +119,7 @@ std::string buffer_bytes(GltfDocument& document, const Json& buffer, size_t inde
         return {};
     }
     if (bytes.size() < length)
-        refuse(document.place(pointer + "/byteLength"),
+        refuse(document.location(pointer + "/byteLength"),
                "is " + std::to_string(length) + ", but the data has " + std::to_string(bytes.size()) + " bytes");
     bytes.resize(length);
     return bytes;
@@ -127,11 +127,11 @@ std::string buffer_bytes(GltfDocument& document, const Json& buffer, size_t inde
 }
 
 std::string gltf_uri_bytes(GltfDocument& document, const std::string& uri, const std::string& pointer, uint64_t most) {
-    if (is_data_uri(uri)) return data_uri_bytes(uri, document.place(pointer));
+    if (is_data_uri(uri)) return data_uri_bytes(uri, document.location(pointer));
     const fs::path path = resolved(document, uri, pointer);
     std::string bytes;
     const Field field{nullptr, document.file, pointer};
-    with_place(field, [&] { bytes = read_file(path, most); });
+    with_location(field, [&] { bytes = read_file(path, most); });
     add_input(*document.scene, path, bytes);
     return bytes;
 }
@@ -143,7 +143,7 @@ void load_gltf_buffers(GltfDocument& document, const Json& json, const GltfConta
     for (size_t i = 0; i < buffers->items.size(); ++i) {
         total += static_cast<uint64_t>(buffers->items[i].number_or("byteLength", 0));
         if (total > max_buffer_bytes)
-            refuse(document.place(gltf_pointer("buffers", i, "byteLength")), "all buffers together are over 8 GiB");
+            refuse(document.location(gltf_pointer("buffers", i, "byteLength")), "all buffers together are over 8 GiB");
         document.lacking.emplace_back();
         document.buffers.push_back(buffer_bytes(document, buffers->items[i], i, container, document.lacking.back()));
     }
@@ -155,7 +155,7 @@ void list_gltf_images(GltfDocument& document, const Json& json) {
     for (size_t i = 0; i < images->items.size(); ++i) {
         const Json& image = images->items[i];
         if (image.has("uri") == image.has("bufferView"))
-            refuse(document.place(gltf_pointer("images", i)), "needs exactly one of uri and bufferView");
+            refuse(document.location(gltf_pointer("images", i)), "needs exactly one of uri and bufferView");
         document.images.push_back({image.string_or("uri", ""), static_cast<int>(image.number_or("bufferView", -1))});
     }
 }

@@ -12,10 +12,10 @@ std::string gltf_pointer(std::string_view collection, size_t index, std::string_
     return member.empty() ? pointer : pointer + "/" + std::string(member);
 }
 
-std::string GltfDocument::place(std::string_view pointer) const { return json_place(file, pointer); }
+std::string GltfDocument::location(std::string_view pointer) const { return json_location(file, pointer); }
 
 void GltfDocument::warn(std::string_view pointer, std::string_view what) {
-    tyndall::warn(*scene, place(pointer) + ": " + std::string(what));
+    tyndall::warn(*scene, location(pointer) + ": " + std::string(what));
 }
 
 void load_gltf(const std::filesystem::path& file, const LoadOptions& options, Scene& scene) {
@@ -29,7 +29,7 @@ void load_gltf(const std::filesystem::path& file, const LoadOptions& options, Sc
         add_input(scene, file, container.bytes);
         for (const std::string& warning : container.warnings) document.warn("", warning);
         const Json json = parse_json(container.json, document.file);
-        check_gltf_shape(json, document.file);
+        check_gltf_schema(json, document.file);
         check_gltf_extensions(document, json);
         check_gltf_needs(json, document.file);
         parse_gltf(document, json);

@@ -14,12 +14,12 @@ std::string pointer_to(int index) {
 
 std::string profile_bytes(GltfDocument& document, const tinygltf::Value& light, const std::string& pointer) {
     if (light.Has("uri") == light.Has("bufferView"))
-        refuse(document.place(pointer), "needs exactly one of uri and bufferView");
+        refuse(document.location(pointer), "needs exactly one of uri and bufferView");
     if (light.Has("uri"))
         return gltf_uri_bytes(document, light.Get("uri").Get<std::string>(), pointer + "/uri", largest_ies_file);
     const tinygltf::BufferView& view = document.model.bufferViews[light.Get("bufferView").GetNumberAsInt()];
     if (const std::string& why = document.lacking[view.buffer]; !why.empty())
-        fail(ExitCode::unreadable, document.place(pointer), why);
+        fail(ExitCode::unreadable, document.location(pointer), why);
     return document.buffers[view.buffer].substr(view.byteOffset, view.byteLength);
 }
 
@@ -28,7 +28,7 @@ std::shared_ptr<const IesProfile> profile_at(GltfDocument& document, int index) 
     if (profile) return profile;
     const std::string pointer = pointer_to(index);
     const tinygltf::Value& light = document.model.extensions.at(extension_name).Get("lights").Get(index);
-    return profile = read_profile(profile_bytes(document, light, pointer), document.place(pointer), *document.scene);
+    return profile = read_profile(profile_bytes(document, light, pointer), document.location(pointer), *document.scene);
 }
 }
 

@@ -53,7 +53,7 @@ std::string image_bytes(GltfDocument& document, int index, const std::string& po
     if (image.buffer_view < 0) return gltf_uri_bytes(document, image.uri, pointer + "/uri", uint64_t{1} << 30);
     const tinygltf::BufferView& view = document.model.bufferViews[image.buffer_view];
     if (const std::string& why = document.lacking[view.buffer]; !why.empty())
-        fail(ExitCode::unreadable, document.place(pointer), why);
+        fail(ExitCode::unreadable, document.location(pointer), why);
     return document.buffers[view.buffer].substr(view.byteOffset, view.byteLength);
 }
 
@@ -70,10 +70,10 @@ Image<vec4> decoded_image(GltfDocument& document, int index) {
         bytes = image_bytes(document, index, pointer);
     } catch (const Error& error) {
         if (error.code == ExitCode::refused) throw;
-        const std::string text = error.what(), place = pointer + "/uri: ";
-        const size_t at = text.find(place); // strips the place, which the warning repeats
+        const std::string text = error.what(), location = pointer + "/uri: ";
+        const size_t at = text.find(location); // strips the place, which the warning repeats
         document.warn(pointer, "the material's color is used instead: " +
-                                   (at == text.npos ? text : text.substr(at + place.size())));
+                                   (at == text.npos ? text : text.substr(at + location.size())));
         return {};
     }
     const ImageFormat format = image_format(bytes);

@@ -35,11 +35,11 @@ std::vector<float> attribute(GltfDocument& document, const std::map<std::string,
                              Scaling scaling = Scaling::as_declared) {
     const auto found = attributes.find(name);
     if (found == attributes.end()) return {};
-    const std::string place = pointer + "/" + name;
+    const std::string location = pointer + "/" + name;
     if (const size_t has = document.model.accessors[found->second].count; count && has != count)
-        refuse(document.place(place),
+        refuse(document.location(location),
                "has " + std::to_string(has) + " elements, POSITION has " + std::to_string(count));
-    return gltf_floats(document, found->second, components, place, scaling);
+    return gltf_floats(document, found->second, components, location, scaling);
 }
 
 // Morph targets, and joints and weights of a skin.
@@ -48,16 +48,16 @@ void read_shapes(GltfDocument& document, const tinygltf::Primitive& primitive, c
     const size_t count = vertices.count();
     for (size_t t = 0; t < primitive.targets.size(); ++t) {
         if ((document.morphed += count) > max_morphed)
-            refuse(document.place(pointer + "/targets"), "the file has too many morph targets");
-        const std::string place = pointer + "/targets/" + std::to_string(t);
-        vertices.targets.push_back({attribute(document, primitive.targets[t], "POSITION", 3, count, place),
-                                    attribute(document, primitive.targets[t], "NORMAL", 3, count, place)});
+            refuse(document.location(pointer + "/targets"), "the file has too many morph targets");
+        const std::string location = pointer + "/targets/" + std::to_string(t);
+        vertices.targets.push_back({attribute(document, primitive.targets[t], "POSITION", 3, count, location),
+                                    attribute(document, primitive.targets[t], "NORMAL", 3, count, location)});
         if (vertices.normals.empty()) vertices.targets.back().normals.clear();
     }
     for (int set = 0; set < max_influence_sets; ++set) {
-        const std::string number = std::to_string(set), place = pointer + "/attributes";
-        Vertices::Influences here{attribute(document, primitive.attributes, "JOINTS_" + number, 4, count, place),
-                                  attribute(document, primitive.attributes, "WEIGHTS_" + number, 4, count, place)};
+        const std::string number = std::to_string(set), location = pointer + "/attributes";
+        Vertices::Influences here{attribute(document, primitive.attributes, "JOINTS_" + number, 4, count, location),
+                                  attribute(document, primitive.attributes, "WEIGHTS_" + number, 4, count, location)};
         if (here.joints.empty() || here.weights.empty()) break;
         vertices.influences.push_back(std::move(here));
     }
@@ -65,19 +65,19 @@ void read_shapes(GltfDocument& document, const tinygltf::Primitive& primitive, c
 
 Vertices read_vertices(GltfDocument& document, const tinygltf::Primitive& primitive, int uv_set,
                        const std::string& pointer) {
-    const std::string place = pointer + "/attributes";
+    const std::string location = pointer + "/attributes";
     Vertices vertices;
-    vertices.positions = attribute(document, primitive.attributes, "POSITION", 3, 0, place);
+    vertices.positions = attribute(document, primitive.attributes, "POSITION", 3, 0, location);
     const size_t count = vertices.count();
-    vertices.normals = attribute(document, primitive.attributes, "NORMAL", 3, count, place);
+    vertices.normals = attribute(document, primitive.attributes, "NORMAL", 3, count, location);
     const std::string uvs = "TEXCOORD_" + std::to_string(uv_set);
-    vertices.uvs = attribute(document, primitive.attributes, uvs, 2, count, place);
+    vertices.uvs = attribute(document, primitive.attributes, uvs, 2, count, location);
     read_shapes(document, primitive, pointer, vertices);
     const auto color = primitive.attributes.find("COLOR_0");
     if (color == primitive.attributes.end()) return vertices;
     vertices.color_parts = document.model.accessors[color->second].type == TINYGLTF_TYPE_VEC4 ? 4 : 3;
     vertices.colors = attribute(document, primitive.attributes, "COLOR_0", static_cast<int>(vertices.color_parts),
-                                count, place, Scaling::normalized);
+                                count, location, Scaling::normalized);
     return vertices;
 }
 
@@ -88,12 +88,12 @@ std::vector<uint32_t> read_indices(GltfDocument& document, const tinygltf::Primi
         indices = gltf_integers(document, primitive.indices, pointer + "/indices");
         for (size_t i = 0; i < indices.size(); ++i)
             if (indices[i] >= vertices)
-                refuse(document.place(pointer + "/indices"), "index " + std::to_string(i) + " is " +
-                                                                 std::to_string(indices[i]) + "; there are only " +
-                                                                 std::to_string(vertices) + " vertices");
+                refuse(document.location(pointer + "/indices"), "index " + std::to_string(i) + " is " +
+                                                                    std::to_string(indices[i]) + "; there are only " +
+                                                                    std::to_string(vertices) + " vertices");
         return indices;
     }
-    if (vertices > max_triangles) refuse(document.place(pointer), "has too many vertices");
+    if (vertices > max_triangles) refuse(document.location(pointer), "has too many vertices");
     indices.resize(vertices);
     for (size_t i = 0; i < vertices; ++i) indices[i] = static_cast<uint32_t>(i);
     return indices;
@@ -170,15 +170,15 @@ void copy_shape(const Vertices& vertices, size_t from, Mesh& mesh) {
 // Copies the vertices the triangles use, in the order they are first used, and renumbers.
 void compact(const Vertices& vertices, Mesh& mesh) {
     constexpr uint32_t unused = ~0u;
-    std::vector<uint32_t> place(vertices.count(), unused);
+    std::vector<uint32_t> location(vertices.count(), unused);
     mesh.targets.resize(vertices.targets.size());
     mesh.influences = 4 * vertices.influences.size();
     const auto finite_or = [](float value, float otherwise) { return std::isfinite(value) ? value : otherwise; };
     for (glm::uvec3& triangle : mesh.triangles)
         for (int corner = 0; corner < 3; ++corner) {
             const uint32_t from = triangle[corner];
-            if (place[from] == unused) {
-                place[from] = static_cast<uint32_t>(mesh.positions.size());
+            if (location[from] == unused) {
+                location[from] = static_cast<uint32_t>(mesh.positions.size());
                 mesh.positions.push_back(triple(vertices.positions, from));
                 if (!vertices.normals.empty()) mesh.normals.push_back(triple(vertices.normals, from));
                 copy_shape(vertices, from, mesh);
@@ -191,7 +191,7 @@ void compact(const Vertices& vertices, Mesh& mesh) {
                     mesh.colors.back() = glm::clamp(mesh.colors.back(), vec3(0), vec3(1e6f));
                 }
             }
-            triangle[corner] = place[from];
+            triangle[corner] = location[from];
         }
     if (!mesh.normals.empty()) mend_normals(mesh);
 }
@@ -219,8 +219,8 @@ int scene_mesh(GltfDocument& document, const tinygltf::Primitive& primitive, con
     if (position == primitive.attributes.end()) return document.count("primitives without positions are ignored"), -1;
     for (const char* compression : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
         if (primitive.extensions.count(compression) && document.model.accessors[position->second].bufferView < 0)
-            refuse(document.place(pointer), std::string("the mesh is compressed with ") + compression +
-                                                ", which cannot be read; export without it");
+            refuse(document.location(pointer), std::string("the mesh is compressed with ") + compression +
+                                                   ", which cannot be read; export without it");
     if (!has_data(document, primitive)) return document.count("primitives whose buffer has no data are ignored"), -1;
 
     int uv_set = 0;
@@ -230,7 +230,7 @@ int scene_mesh(GltfDocument& document, const tinygltf::Primitive& primitive, con
     const Vertices vertices = read_vertices(document, primitive, uv_set, pointer);
     const std::vector<uint32_t> indices = read_indices(document, primitive, vertices.count(), pointer);
     if (indices.size() / 3 + document.triangles > max_triangles)
-        refuse(document.place(pointer), "the file has more than " + std::to_string(max_triangles) + " triangles");
+        refuse(document.location(pointer), "the file has more than " + std::to_string(max_triangles) + " triangles");
     mesh.triangles = triangles_of(indices, primitive.mode);
     if (const size_t dropped = drop_non_finite(mesh.triangles, vertices.positions))
         document.count("triangles with non-finite corners are ignored", static_cast<int>(dropped));

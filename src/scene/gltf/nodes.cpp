@@ -20,7 +20,7 @@ quat turned(GltfDocument& document, float x, float y, float z, float w) {
     return {1, 0, 0, 0};
 }
 
-void read_place(GltfDocument& document, const tinygltf::Node& source, Node& node) {
+void read_transform(GltfDocument& document, const tinygltf::Node& source, Node& node) {
     if (source.matrix.size() == 16) {
         mat4 matrix;
         for (int i = 0; i < 16; ++i) matrix[i / 4][i % 4] = static_cast<float>(source.matrix[i]);
@@ -49,7 +49,7 @@ int add_node(GltfDocument& document, int index, int parent) {
     Node node;
     node.name = source.name.empty() ? "node " + std::to_string(index) : source.name;
     node.parent = parent;
-    read_place(document, source, node);
+    read_transform(document, source, node);
     document.scene->nodes.push_back(std::move(node));
     return document.nodes[index] = static_cast<int>(document.scene->nodes.size()) - 1;
 }
@@ -80,8 +80,8 @@ int gltf_skin(GltfDocument& document, int index) {
         const std::string pointer = gltf_pointer("skins", index, "inverseBindMatrices");
         const std::vector<float> values = gltf_floats(document, source.inverseBindMatrices, 16, pointer);
         if (values.size() < 16 * skin.joints.size())
-            refuse(document.place(pointer), "has " + std::to_string(values.size() / 16) + " matrices for " +
-                                                std::to_string(skin.joints.size()) + " joints");
+            refuse(document.location(pointer), "has " + std::to_string(values.size() / 16) + " matrices for " +
+                                                   std::to_string(skin.joints.size()) + " joints");
         for (size_t i = 0; i < 16 * skin.joints.size(); ++i) {
             if (!std::isfinite(values[i])) return -1;
             skin.inverse_bind[i / 16][static_cast<int>(i / 4 % 4)][static_cast<int>(i % 4)] = values[i];
@@ -108,11 +108,12 @@ void add_instances(GltfDocument& document, int index, int node, const std::strin
     Scene& scene = *document.scene;
     for (const int drawn : gltf_mesh(document, source.mesh)) {
         if (scene.instances.size() >= max_instances)
-            refuse(document.place(pointer), "the scene has more than " + std::to_string(max_instances) + " instances");
+            refuse(document.location(pointer),
+                   "the scene has more than " + std::to_string(max_instances) + " instances");
         const Mesh& mesh = scene.meshes[drawn];
         const size_t joints = skin >= 0 ? scene.skins[skin].joints.size() : 0;
         if ((document.posed += joints + mesh.targets.size()) > max_posed)
-            refuse(document.place(pointer),
+            refuse(document.location(pointer),
                    "the scene's instances have more than " + std::to_string(max_posed) + " joints and morph targets");
         Instance instance{node, drawn};
         instance.target_weights = target_weights(document.model, index, source.mesh, mesh.targets.size());
@@ -135,13 +136,13 @@ void add_gpu_instances(GltfDocument& document, int index, const tinygltf::Value&
         result = gltf_floats(document, attributes.Get(name).GetNumberAsInt(), components, pointer + "/" + name);
         const size_t here = result.size() / components;
         if (count && here != count)
-            refuse(document.place(pointer), "the attributes differ in their number of elements");
+            refuse(document.location(pointer), "the attributes differ in their number of elements");
         count = here;
         return result;
     };
     const std::vector<float> moves = values("TRANSLATION", 3), turns = values("ROTATION", 4),
                              sizes = values("SCALE", 3);
-    if (count > max_instances) refuse(document.place(pointer), "has too many instances");
+    if (count > max_instances) refuse(document.location(pointer), "has too many instances");
     for (size_t i = 0; i < count; ++i) {
         Node node;
         node.name = document.scene->nodes[document.nodes[index]].name + " " + std::to_string(i);
@@ -208,7 +209,7 @@ LightSource light_source(const GltfDocument& document, int index) {
     if (source.range > 0 && !is_distant(light)) light.range = static_cast<float>(source.range);
     if (!has_cone(light)) return light;
     if (source.spot.innerConeAngle > source.spot.outerConeAngle)
-        refuse(document.place("/extensions/KHR_lights_punctual/lights/" + std::to_string(index) + "/spot"),
+        refuse(document.location("/extensions/KHR_lights_punctual/lights/" + std::to_string(index) + "/spot"),
                "innerConeAngle is greater than outerConeAngle");
     light.inner_cone = std::min(static_cast<float>(source.spot.innerConeAngle), pi / 2);
     light.outer_cone = std::min(static_cast<float>(source.spot.outerConeAngle), pi / 2);

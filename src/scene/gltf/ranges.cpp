@@ -15,7 +15,7 @@ void check_buffer_views(const GltfDocument& document) {
         const uint64_t size = document.buffers[view.buffer].size();
         if (!document.lacking[view.buffer].empty()) continue; // refused where it is read
         if (view.byteOffset > size || view.byteLength > size - view.byteOffset)
-            refuse(document.place(gltf_pointer("bufferViews", i)),
+            refuse(document.location(gltf_pointer("bufferViews", i)),
                    "needs bytes " + std::to_string(view.byteOffset) + " to " +
                        std::to_string(view.byteOffset + view.byteLength) + " of a buffer that has only " +
                        std::to_string(size));
@@ -34,10 +34,10 @@ void check_span(const GltfDocument& document, int view_index, uint64_t offset, u
                 uint64_t stride, const std::string& pointer) {
     const uint64_t length = document.model.bufferViews[view_index].byteLength;
     if (offset <= length && size <= length - offset && count - 1 <= (length - offset - size) / stride) return;
-    refuse(document.place(pointer), std::to_string(count) + " elements of " + std::to_string(size) + " bytes, " +
-                                        std::to_string(stride) + " apart, from byte " + std::to_string(offset) +
-                                        " do not fit in buffer view " + std::to_string(view_index) + ", which has " +
-                                        std::to_string(length) + " bytes");
+    refuse(document.location(pointer), std::to_string(count) + " elements of " + std::to_string(size) + " bytes, " +
+                                           std::to_string(stride) + " apart, from byte " + std::to_string(offset) +
+                                           " do not fit in buffer view " + std::to_string(view_index) + ", which has " +
+                                           std::to_string(length) + " bytes");
 }
 
 void check_accessors(const GltfDocument& document) {
@@ -48,19 +48,19 @@ void check_accessors(const GltfDocument& document) {
         if (accessor.bufferView >= 0) {
             const uint64_t stride = document.model.bufferViews[accessor.bufferView].byteStride;
             if (stride && stride < size)
-                refuse(document.place(gltf_pointer("bufferViews", accessor.bufferView, "byteStride")),
+                refuse(document.location(gltf_pointer("bufferViews", accessor.bufferView, "byteStride")),
                        "is " + std::to_string(stride) + ", less than the " + std::to_string(size) +
                            " bytes of an element of accessor " + std::to_string(i));
             check_span(document, accessor.bufferView, accessor.byteOffset, accessor.count, extent(accessor, size),
                        stride ? stride : size, pointer);
         } else if (accessor.count > max_elements_of_zeros) {
-            refuse(document.place(pointer + "/count"),
+            refuse(document.location(pointer + "/count"),
                    "is " + std::to_string(accessor.count) + ": too many for an accessor without a buffer view");
         }
         if (!accessor.sparse.isSparse) continue;
         const auto& sparse = accessor.sparse;
         if (static_cast<uint64_t>(sparse.count) > accessor.count)
-            refuse(document.place(pointer + "/sparse/count"), "is greater than the accessor's count");
+            refuse(document.location(pointer + "/sparse/count"), "is greater than the accessor's count");
         const uint64_t index_size =
             tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(sparse.indices.componentType));
         check_span(document, sparse.indices.bufferView, sparse.indices.byteOffset, sparse.count, index_size, index_size,
@@ -78,7 +78,7 @@ void check_nodes(const GltfDocument& document) {
         for (size_t c = 0; c < nodes[i].children.size(); ++c) {
             int& known = parent[nodes[i].children[c]];
             if (known >= 0)
-                refuse(document.place(gltf_pointer("nodes", i, "children/") + std::to_string(c)),
+                refuse(document.location(gltf_pointer("nodes", i, "children/") + std::to_string(c)),
                        "node " + std::to_string(nodes[i].children[c]) + " is already a child of node " +
                            std::to_string(known));
             known = static_cast<int>(i);
@@ -91,7 +91,8 @@ void check_nodes(const GltfDocument& document) {
         while (at >= 0 && !level[at] && ++steps <= max_levels) at = parent[at];
         const int above = at >= 0 && level[at] ? level[at] : 0;
         if (steps + above > max_levels)
-            refuse(document.place(gltf_pointer("nodes", i)), "its parents form a cycle, or go more than 256 levels up");
+            refuse(document.location(gltf_pointer("nodes", i)),
+                   "its parents form a cycle, or go more than 256 levels up");
         int down = steps + above;
         for (int walk = static_cast<int>(i); walk >= 0 && !level[walk]; walk = parent[walk]) level[walk] = down--;
     }
@@ -100,7 +101,7 @@ void check_nodes(const GltfDocument& document) {
         const std::vector<int>& roots = document.model.scenes[s].nodes;
         for (size_t i = 0; i < roots.size(); ++i)
             if (parent[roots[i]] >= 0)
-                refuse(document.place(gltf_pointer("scenes", s, "nodes/") + std::to_string(i)),
+                refuse(document.location(gltf_pointer("scenes", s, "nodes/") + std::to_string(i)),
                        "node " + std::to_string(roots[i]) + " is not a root: it is a child of node " +
                            std::to_string(parent[roots[i]]));
     }
@@ -111,7 +112,7 @@ void check_animations(const GltfDocument& document) {
         const tinygltf::Animation& animation = document.model.animations[a];
         for (const tinygltf::AnimationChannel& channel : animation.channels)
             if (channel.sampler < 0 || static_cast<size_t>(channel.sampler) >= animation.samplers.size())
-                refuse(document.place(gltf_pointer("animations", a, "channels")),
+                refuse(document.location(gltf_pointer("animations", a, "channels")),
                        "sampler " + std::to_string(channel.sampler) + " does not exist; the number of samplers is " +
                            std::to_string(animation.samplers.size()));
     }
@@ -123,9 +124,9 @@ void check_cameras(const GltfDocument& document) {
         const tinygltf::PerspectiveCamera& perspective = document.model.cameras[i].perspective;
         const bool is_ortho = document.model.cameras[i].type == "orthographic";
         if (is_ortho && ortho.ymag == 0)
-            refuse(document.place(gltf_pointer("cameras", i, "orthographic/ymag")), "must not be 0");
+            refuse(document.location(gltf_pointer("cameras", i, "orthographic/ymag")), "must not be 0");
         if (is_ortho ? ortho.zfar <= ortho.znear : perspective.zfar > 0 && perspective.zfar <= perspective.znear)
-            refuse(document.place(gltf_pointer("cameras", i)), "zfar must be greater than znear");
+            refuse(document.location(gltf_pointer("cameras", i)), "zfar must be greater than znear");
     }
 }
 }

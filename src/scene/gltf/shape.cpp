@@ -9,11 +9,11 @@
 
 namespace tyndall {
 namespace {
-using gltf_shape::Rule, gltf_shape::Want;
+using gltf_schema::Rule, gltf_schema::ValueType;
 
-class ShapeCheck {
+class SchemaCheck {
 public:
-    ShapeCheck(const Json& document, std::string_view file) : document_(document), file_(file) {}
+    SchemaCheck(const Json& document, std::string_view file) : document_(document), file_(file) {}
 
     void object(const Json& value, std::span<const Rule> rules, const std::string& pointer) const {
         if (value.kind != Json::Kind::object) wrong(value, pointer, "an object");
@@ -22,7 +22,7 @@ public:
             if (member) {
                 check(*member, rule, json_pointer(pointer, rule.name));
             } else if (rule.required) {
-                refuse(json_place(file_, pointer), "\"" + std::string(rule.name) + "\" is missing");
+                refuse(json_location(file_, pointer), "\"" + std::string(rule.name) + "\" is missing");
             }
         }
     }
@@ -32,58 +32,58 @@ private:
         std::string got = value.kind == Json::Kind::object  ? "an object"
                           : value.kind == Json::Kind::array ? "an array"
                                                             : printable(format_json(value), 60);
-        refuse(json_place(file_, pointer), "expected " + expected + ", got " + got);
+        refuse(json_location(file_, pointer), "expected " + expected + ", got " + got);
     }
 
     void check(const Json& value, const Rule& rule, const std::string& pointer) const {
-        switch (rule.want) {
-        case Want::flag:
+        switch (rule.type) {
+        case ValueType::flag:
             if (value.kind != Json::Kind::boolean) wrong(value, pointer, "true or false");
             return;
-        case Want::text:
+        case ValueType::text:
             if (value.kind != Json::Kind::string) wrong(value, pointer, "a string");
             return;
-        case Want::integer:
+        case ValueType::integer:
             return integer(value, rule.low, rule.high, pointer);
-        case Want::number:
+        case ValueType::number:
             return number(value, rule.low, rule.high, pointer);
-        case Want::positive:
+        case ValueType::positive:
             if (value.kind != Json::Kind::number || !(value.number > 0 && value.number <= rule.high))
                 wrong(value, pointer, "a number above 0, at most " + text_of(rule.high));
             return;
-        case Want::numbers:
+        case ValueType::numbers:
             array(value, pointer, "an array of numbers");
             if (rule.length && value.items.size() != rule.length)
-                refuse(json_place(file_, pointer), "expected " + std::to_string(rule.length) + " numbers, got " +
-                                                       std::to_string(value.items.size()));
+                refuse(json_location(file_, pointer), "expected " + std::to_string(rule.length) + " numbers, got " +
+                                                          std::to_string(value.items.size()));
             for (size_t i = 0; i < value.items.size(); ++i)
                 number(value.items[i], rule.low, rule.high, json_pointer(pointer, i));
             return;
-        case Want::one_of:
+        case ValueType::one_of:
             for (const int known : rule.values)
                 if (value.kind == Json::Kind::number && value.number == known) return;
             wrong(value, pointer, "one of " + list(rule.values));
-        case Want::words:
+        case ValueType::words:
             for (const std::string_view word : rule.words)
                 if (value.kind == Json::Kind::string && value.string == word) return;
             wrong(value, pointer, "one of " + list(rule.words));
-        case Want::index:
+        case ValueType::index:
             return index(value, rule.collection, pointer);
-        case Want::indices:
+        case ValueType::indices:
             array(value, pointer, "an array of indices");
             for (size_t i = 0; i < value.items.size(); ++i)
                 index(value.items[i], rule.collection, json_pointer(pointer, i));
             return;
-        case Want::index_map:
+        case ValueType::index_map:
             return index_map(value, rule.collection, pointer);
-        case Want::index_maps:
+        case ValueType::index_maps:
             array(value, pointer, "an array of objects");
             for (size_t i = 0; i < value.items.size(); ++i)
                 index_map(value.items[i], rule.collection, json_pointer(pointer, i));
             return;
-        case Want::object:
+        case ValueType::object:
             return object(value, rule.fields, pointer);
-        case Want::objects:
+        case ValueType::objects:
             array(value, pointer, "an array of objects");
             for (size_t i = 0; i < value.items.size(); ++i)
                 object(value.items[i], rule.fields, json_pointer(pointer, i));
@@ -157,14 +157,14 @@ const std::vector<Json>& items_of(const Json& document, std::string_view collect
 }
 }
 
-void check_gltf_shape(const Json& document, std::string_view file) {
-    ShapeCheck(document, file).object(document, gltf_shape::root, "");
+void check_gltf_schema(const Json& document, std::string_view file) {
+    SchemaCheck(document, file).object(document, gltf_schema::root, "");
 }
 
 void check_gltf_needs(const Json& document, std::string_view file) {
     const auto complain = [&](std::string_view collection, size_t i, const std::string& what) {
         const std::string_view parent = collection == "lights" ? "/extensions/KHR_lights_punctual" : "";
-        refuse(json_place(file, json_pointer(json_pointer(parent, collection), i)), what);
+        refuse(json_location(file, json_pointer(json_pointer(parent, collection), i)), what);
     };
     const auto need_own_object = [&](std::string_view collection, std::string_view only) {
         const std::vector<Json>& all = items_of(document, collection);
@@ -187,9 +187,9 @@ void check_gltf_needs(const Json& document, std::string_view file) {
         for (size_t k = 0; k < primitives.size(); ++k) {
             const Json* indices = primitives[k].find("indices");
             if (indices && !accessors[static_cast<size_t>(indices->number)].has("bufferView"))
-                refuse(
-                    json_place(file, "/meshes/" + std::to_string(i) + "/primitives/" + std::to_string(k) + "/indices"),
-                    "accessor " + format_json(*indices) + " has no buffer view");
+                refuse(json_location(file,
+                                     "/meshes/" + std::to_string(i) + "/primitives/" + std::to_string(k) + "/indices"),
+                       "accessor " + format_json(*indices) + " has no buffer view");
         }
     }
 }

@@ -5,9 +5,9 @@
 
 namespace tyndall {
 // Throws Error (refused) naming file and JSON pointer.
-void check_gltf_shape(const Json& document, std::string_view file);
+void check_gltf_schema(const Json& document, std::string_view file);
 
-// Checks requirements of members on each other; call after check_gltf_shape(). Throws Error (refused).
+// Checks requirements of members on each other; call after check_gltf_schema(). Throws Error (refused).
 void check_gltf_needs(const Json& document, std::string_view file);
 
 // The array of a collection ("nodes"; "lights" of KHR_lights_punctual, "profiles" of EXT_lights_ies), or null.

@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-namespace tyndall::gltf_shape {
-enum class Want {
+namespace tyndall::gltf_schema {
+enum class ValueType {
     flag,
     text,
     integer,
@@ -25,7 +25,7 @@ enum class Want {
 
 struct Rule {
     std::string_view name;
-    Want want;
+    ValueType type;
     bool required = false;
     double low = 0, high = 0;                     // integer, number, numbers
     size_t length = 0;                            // numbers: how many, 0 = any
@@ -38,45 +38,45 @@ struct Rule {
 constexpr double largest_int = 2147483647, largest_offset = 9007199254740992, largest_float = 3.4e38;
 constexpr bool required = true;
 
-constexpr Rule flag(std::string_view name) { return {.name = name, .want = Want::flag}; }
+constexpr Rule flag(std::string_view name) { return {.name = name, .type = ValueType::flag}; }
 constexpr Rule text(std::string_view name, bool needed = false) {
-    return {.name = name, .want = Want::text, .required = needed};
+    return {.name = name, .type = ValueType::text, .required = needed};
 }
 constexpr Rule integer(std::string_view name, double low, double high, bool needed = false) {
-    return {.name = name, .want = Want::integer, .required = needed, .low = low, .high = high};
+    return {.name = name, .type = ValueType::integer, .required = needed, .low = low, .high = high};
 }
 constexpr Rule number(std::string_view name, double low, double high, bool needed = false) {
-    return {.name = name, .want = Want::number, .required = needed, .low = low, .high = high};
+    return {.name = name, .type = ValueType::number, .required = needed, .low = low, .high = high};
 }
 constexpr Rule positive(std::string_view name, double high, bool needed = false) {
-    return {.name = name, .want = Want::positive, .required = needed, .high = high};
+    return {.name = name, .type = ValueType::positive, .required = needed, .high = high};
 }
 constexpr Rule numbers(std::string_view name, size_t length, double low = -largest_float, double high = largest_float) {
-    return {.name = name, .want = Want::numbers, .low = low, .high = high, .length = length};
+    return {.name = name, .type = ValueType::numbers, .low = low, .high = high, .length = length};
 }
 constexpr Rule one_of(std::string_view name, std::span<const int> values, bool needed = false) {
-    return {.name = name, .want = Want::one_of, .required = needed, .values = values};
+    return {.name = name, .type = ValueType::one_of, .required = needed, .values = values};
 }
 constexpr Rule words(std::string_view name, std::span<const std::string_view> words, bool needed = false) {
-    return {.name = name, .want = Want::words, .required = needed, .words = words};
+    return {.name = name, .type = ValueType::words, .required = needed, .words = words};
 }
 constexpr Rule index(std::string_view name, std::string_view collection, bool needed = false) {
-    return {.name = name, .want = Want::index, .required = needed, .collection = collection};
+    return {.name = name, .type = ValueType::index, .required = needed, .collection = collection};
 }
 constexpr Rule indices(std::string_view name, std::string_view collection, bool needed = false) {
-    return {.name = name, .want = Want::indices, .required = needed, .collection = collection};
+    return {.name = name, .type = ValueType::indices, .required = needed, .collection = collection};
 }
 constexpr Rule index_map(std::string_view name, std::string_view collection, bool needed = false) {
-    return {.name = name, .want = Want::index_map, .required = needed, .collection = collection};
+    return {.name = name, .type = ValueType::index_map, .required = needed, .collection = collection};
 }
 constexpr Rule index_maps(std::string_view name, std::string_view collection) {
-    return {.name = name, .want = Want::index_maps, .collection = collection};
+    return {.name = name, .type = ValueType::index_maps, .collection = collection};
 }
 constexpr Rule object(std::string_view name, std::span<const Rule> fields, bool needed = false) {
-    return {.name = name, .want = Want::object, .required = needed, .fields = fields};
+    return {.name = name, .type = ValueType::object, .required = needed, .fields = fields};
 }
 constexpr Rule objects(std::string_view name, std::span<const Rule> fields, bool needed = false) {
-    return {.name = name, .want = Want::objects, .required = needed, .fields = fields};
+    return {.name = name, .type = ValueType::objects, .required = needed, .fields = fields};
 }
 
 // Core: buffers and accessors.

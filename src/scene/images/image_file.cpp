@@ -57,7 +57,7 @@ const std::array<float, 256>& linear_table() {
 
 // In the display window, black where the file has no pixels.
 Image<vec3> decode_openexr(std::string_view bytes, std::string_view where, std::string& note) {
-    const ExrPicture file = decode_exr_picture(bytes, std::string(where));
+    const ExrImage file = decode_exr_image(bytes, std::string(where));
     if (file.foreign_primaries) note = "its primaries are not Rec.709; its colors are used without conversion";
     Image<vec3> image(file.display);
     const ivec2 begin = glm::max(file.low, ivec2(0)), end = glm::min(file.low + file.color.size, file.display);
@@ -121,7 +121,7 @@ Image<vec4> decode_texture(std::string_view bytes, std::string_view where) {
     return image;
 }
 
-Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::string& note) {
+Image<vec3> decode_image(std::string_view bytes, std::string_view where, std::string& note) {
     const ImageFormat format = image_format(bytes);
     if (format == ImageFormat::other) refuse(where, not_an_image);
     if (holds_floats(format)) {
@@ -145,7 +145,7 @@ Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::
 
 namespace {
 // Averages the blocks of an image whose pixel colors are `color_of(pixel)`.
-template<class Color> void add_blocks(ReducedPicture& picture, const Color& color_of) {
+template<class Color> void add_blocks(ReducedImage& picture, const Color& color_of) {
     const float share = 1 / static_cast<float>(picture.factor * picture.factor);
     picture.image = Image<vec3>((picture.size + picture.factor - 1) / picture.factor);
     for (int y = 0; y < picture.size.y; ++y)
@@ -155,11 +155,11 @@ template<class Color> void add_blocks(ReducedPicture& picture, const Color& colo
 }
 }
 
-ReducedPicture decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where,
-                              std::string& note) {
+ReducedImage decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where,
+                            std::string& note) {
     const ImageFormat format = image_format(bytes);
     if (format == ImageFormat::other) refuse(where, not_an_image);
-    ReducedPicture picture{image_size(bytes, where), 1, {}};
+    ReducedImage picture{image_size(bytes, where), 1, {}};
     const int side = std::max(picture.size.x, picture.size.y), limit = largest / (holds_floats(format) ? 2 : 1);
     if (side > limit)
         refuse(where, "the image has " + std::to_string(picture.size.x) + "x" + std::to_string(picture.size.y) +

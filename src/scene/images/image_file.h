@@ -22,21 +22,21 @@ Image<vec4> decode_texture(std::string_view bytes, std::string_view where);
 // Decodes an image for backgrounds: sRGB PNG or JPEG, Radiance .hdr or OpenEXR (its display window, black where there
 // are no pixels). Negative values are set to 0. `note` reports these, primaries other than Rec.709, and an image that
 // is all black. Throws Error (refused) naming `where`.
-Image<vec3> decode_picture(std::string_view bytes, std::string_view where, std::string& note);
+Image<vec3> decode_image(std::string_view bytes, std::string_view where, std::string& note);
 
 // An image reduced by an integer factor, each texel the mean of a block; blocks at the right and lower edge may extend
 // past the image, where it is black.
-struct ReducedPicture {
+struct ReducedImage {
     ivec2 size{0}; // of the file
     int factor = 1;
     Image<vec3> image;
 };
 
-// Decodes the formats of decode_picture() at reduced size; with `linear`, PNG and JPEG values are linear. Sides are at
+// Decodes the formats of decode_image() at reduced size; with `linear`, PNG and JPEG values are linear. Sides are at
 // most `largest` in the file (float formats: half of that) and `most` in the result. Throws Error (refused) naming
 // `where`.
-ReducedPicture decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where,
-                              std::string& note);
+ReducedImage decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where,
+                            std::string& note);
 
 // Half the size, each texel the mean of four (alpha-weighted color); odd edges repeat their last texel.
 Image<vec4> halved(const Image<vec4>& image);

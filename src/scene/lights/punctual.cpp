@@ -45,7 +45,7 @@ Interval<double> punctual_reach(const Light& light, dvec3 origin, dvec3 directio
     if (!std::isinf(light.range)) reach = inside_ball(light.position, light.range, origin, direction);
     if (!has_cone(light) || reach.empty()) return reach;
     const dvec3 axis = glm::normalize(dvec3(light.direction));
-    return common(reach, inside_cone(light.position, axis, light.outer_cone, origin, direction));
+    return intersection(reach, inside_cone(light.position, axis, light.outer_cone, origin, direction));
 }
 }
 

@@ -86,7 +86,7 @@ std::shared_ptr<const IesProfile> make_ies_profile(const IesFile& file, std::str
     return profile;
 }
 
-double profile_share(const IesProfile& profile, dvec3 direction) {
+double profile_factor(const IesProfile& profile, dvec3 direction) {
     constexpr double rounding = 1e-5;
     const double vertical = std::atan2(std::hypot(direction.x, direction.y), direction.z);
     if (vertical < profile.first - rounding || vertical > profile.last + rounding) return 0;

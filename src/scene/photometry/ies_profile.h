@@ -25,5 +25,5 @@ struct IesProfile {
 std::shared_ptr<const IesProfile> make_ies_profile(const IesFile& file, std::string content);
 
 // Intensity in a unit direction as a fraction of the peak, in the axes of candela_at().
-double profile_share(const IesProfile& profile, dvec3 direction);
+double profile_factor(const IesProfile& profile, dvec3 direction);
 }

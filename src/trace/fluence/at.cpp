@@ -23,10 +23,10 @@ struct Corners {
 };
 
 // Drops the cells that are hidden from the point, and normalizes the weights.
-void leave_seen(const FluenceGrid& grid, vec3 place, ivec3 home, Corners& corners) {
+void leave_seen(const FluenceGrid& grid, vec3 coord, ivec3 home, Corners& corners) {
     const vec4 cut = grid.cuts[cell_index(grid, home)];
     const auto before = [&](vec3 at) { return glm::dot(vec3(cut), at) + cut.w; };
-    const bool behind = before(place) < 0;
+    const bool behind = before(coord) < 0;
     float sum = 0;
     for (int i = 0; i < 8; ++i) {
         const ivec3 cell = corners.cells[i];
@@ -43,16 +43,16 @@ FluenceAt fluence_at(const FluenceGrid& grid, vec3 point) {
     FluenceAt at;
     if (clip(grid.bounds, point, vec3(0), {0, 1}).empty()) return at;
     const vec3 from_low = (point - grid.bounds.low) / grid.cell;
-    const vec3 place = glm::clamp(from_low - 0.5f, vec3(0), vec3(grid.size - 1));
-    const ivec3 low(place), high = glm::min(low + 1, grid.size - 1);
-    const vec3 weight = place - vec3(low);
+    const vec3 coord = glm::clamp(from_low - 0.5f, vec3(0), vec3(grid.size - 1));
+    const ivec3 low(coord), high = glm::min(low + 1, grid.size - 1);
+    const vec3 weight = coord - vec3(low);
     Corners corners;
     for (int i = 0; i < 8; ++i) {
         corners.cells[i] = {i & 4 ? high.x : low.x, i & 2 ? high.y : low.y, i & 1 ? high.z : low.z};
         corners.shares[i] =
             (i & 4 ? weight.x : 1 - weight.x) * (i & 2 ? weight.y : 1 - weight.y) * (i & 1 ? weight.z : 1 - weight.z);
     }
-    if (!grid.walls.empty()) leave_seen(grid, from_low, ivec3(place + 0.5f), corners);
+    if (!grid.walls.empty()) leave_seen(grid, from_low, ivec3(coord + 0.5f), corners);
     for (int i = 0; i < 8; ++i) {
         const float* values = grid.values.data() + 12 * cell_index(grid, corners.cells[i]);
         for (int c = 0; c < 3; ++c) at.fluence[c] += corners.shares[i] * values[c];

@@ -178,8 +178,8 @@ void add_links(int casters, int lit, const Snapshot& snapshot, CacheKey& key) {
 
 // Adds how a light's intensity depends on direction, and its face's radiance on position.
 void add_filter(const Light& light, CacheKey& key) {
-    if (light.area && light.area->picture)
-        for (const char c : light.area->picture->content) key.add(c);
+    if (light.area && light.area->texture)
+        for (const char c : light.area->texture->content) key.add(c);
     if (!light.filter) return;
     const LightFilter& filter = *light.filter;
     const std::string contents = (filter.profile ? filter.profile->content : std::string()) + " " +
@@ -197,7 +197,7 @@ void add_phase(const Phase& phase, CacheKey& key) {
 }
 
 void add_environment(const Environment& environment, const Snapshot& snapshot, CacheKey& key) {
-    const BackgroundNow& map = environment.map;
+    const BackgroundState& map = environment.map;
     key.add(map.kind).add(map.color).add(map.zenith).add(map.ground).add(map.image).add(map.intensity);
     key.add(map.rotation).add(environment.scale).add(environment.volume_scale).add(environment.surface_scale);
     key.add(environment.shadows), add_links(environment.casters, environment.lit, snapshot, key);
@@ -234,7 +234,7 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
     LightPathRules rules;
     rules.reach = light_reach(snapshot);
     FluenceGrid grid = grid_over(fog_bounds(snapshot, rules.reach), settings.resolution);
-    if (grid.empty() || !has_sources(snapshot)) return {};
+    if (grid.empty() || !has_lights(snapshot)) return {};
     rules.reach.grow(grid.bounds); // fills cells at the border like all others
     rules.noted = grid.bounds, rules.orders = settings.orders, rules.seed = seed;
     const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
@@ -258,7 +258,7 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
 
 std::shared_ptr<const FluenceGrid> cached_fluence(const Snapshot& snapshot, const FluenceSettings& settings,
                                                   uint32_t seed) {
-    if (settings.orders < 2 || snapshot.media.empty() || !has_sources(snapshot)) return nullptr;
+    if (settings.orders < 2 || snapshot.media.empty() || !has_lights(snapshot)) return nullptr;
     const std::shared_ptr<const FluenceGrid> grid = cached(snapshot, "fluence", fluence_key(snapshot, settings, seed),
                                                            [&] { return make_fluence(snapshot, settings, seed); });
     return grid->empty() ? nullptr : grid;

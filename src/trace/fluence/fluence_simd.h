@@ -20,7 +20,7 @@ struct FluenceAt16 {
 struct FluenceAxis {
     Ints low, high, home; // cells
     Floats weight;        // interpolation weight of `high`
-    Floats place;         // in cells from the grid's lower corner
+    Floats coord;         // in cells from the grid's lower corner
 };
 
 // Planes of the surfaces that cut points' home cells: how far a point lies in front, 0 if none does.
@@ -28,7 +28,7 @@ struct FluenceCuts {
     Floats n[3], d;
 
     HWY_INLINE Floats at(const Floats& x, const Floats& y, const Floats& z) const {
-        return fused(n[0], x, fused(n[1], y, fused(n[2], z, d)));
+        return fma(n[0], x, fma(n[1], y, fma(n[2], z, d)));
     }
 };
 HWY_INLINE FluenceCuts cuts_of(const FluenceGrid& grid, const Ints& home) {
@@ -66,7 +66,7 @@ HWY_INLINE void open_corners(const FluenceGrid& grid, const FluenceAxis& x, cons
         }
     }
     const FluenceCuts cuts = cuts_of(grid, (x.home * grid.size.y + y.home) * grid.size.z + z.home);
-    const Mask16 behind = cuts.at(x.place, y.place, z.place) < 0.0f;
+    const Mask16 behind = cuts.at(x.coord, y.coord, z.coord) < 0.0f;
     if (!any(behind)) return;
     Mask16 there[8], none = behind;
     for (int corner = 0; corner < 8; ++corner) {
@@ -92,9 +92,9 @@ HWY_INLINE FluenceAt16 fluence_at16(const FluenceGrid& grid, const Vec3s& point)
     const float scale = 1 / grid.cell;
     const auto axis = [&](const Floats& p, float low, int cells) HWY_ATTR {
         const float last = static_cast<float>(cells - 1);
-        const Floats place = (p - low) * scale, at = min(max(place - 0.5f, 0.0f), last);
+        const Floats coord = (p - low) * scale, at = min(max(coord - 0.5f, 0.0f), last);
         const Ints cell = truncate(at);
-        return FluenceAxis{cell, min(cell + 1, cells - 1), truncate(at + 0.5f), at - to_floats(cell), place};
+        return FluenceAxis{cell, min(cell + 1, cells - 1), truncate(at + 0.5f), at - to_floats(cell), coord};
     };
     const FluenceAxis x = axis(point.x, box.low.x, grid.size.x), y = axis(point.y, box.low.y, grid.size.y),
                       z = axis(point.z, box.low.z, grid.size.z);
@@ -110,7 +110,7 @@ HWY_INLINE FluenceAt16 fluence_at16(const FluenceGrid& grid, const Vec3s& point)
         const Ints at = ((ix * grid.size.y + iy) * grid.size.z + iz) * 12;
         const Floats weight = zero_unless(walls ? inside & open[corner] : inside, corner_share(x, y, z, corner));
         whole = whole + weight;
-        for (int i = 0; i < 12; ++i) sums[i] = fused(gather(grid.values.data() + i, at), weight, sums[i]);
+        for (int i = 0; i < 12; ++i) sums[i] = fma(gather(grid.values.data() + i, at), weight, sums[i]);
     }
     if (walls)
         for (Floats& sum : sums) sum = sum / max(whole, 1e-20f);
@@ -158,9 +158,9 @@ HWY_NOINLINE inline Vec3s scattered_by_lobes(const FluenceAt16& at, const Vec3s&
     if (shape.lobes.empty()) return scattered_fluence(at, direction, shape.mean_cosine);
     Vec3s sum = splat(vec3(0));
     for (const PhaseLobe& lobe : shape.lobes)
-        sum = fused(lobe.alpha == 0 ? scattered_fluence(at, direction, static_cast<float>(lobe.g))
-                                    : scattered_by_draine(at, direction, lobe),
-                    static_cast<float>(lobe.weight), sum);
+        sum = fma(lobe.alpha == 0 ? scattered_fluence(at, direction, static_cast<float>(lobe.g))
+                                  : scattered_by_draine(at, direction, lobe),
+                  static_cast<float>(lobe.weight), sum);
     return sum;
 }
 
@@ -174,7 +174,7 @@ HWY_INLINE Vec3s scattered_fluence(const FluenceGrid& grid, const std::vector<Me
         const Optics& optics = media[m].optics;
         const Vec3s scattered = optics.phase.shape ? scattered_by_lobes(at, direction, *optics.phase.shape)
                                                    : scattered_fluence(at, direction, mean_cosine(optics.phase));
-        sum = fused(scattered * albedo16(optics, point), extinction(m), sum);
+        sum = fma(scattered * albedo16(optics, point), extinction(m), sum);
     }
     return sum;
 }

@@ -119,7 +119,7 @@ vec3 LightSquare::share(const Ray& ray) const {
     }
     vec3 share(has_cone(*light) ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f);
     if (light->filter) share *= vec3(filtered(*light->filter, dvec3(direction)));
-    if (light->area) share *= face_picture(*light->area, ray.origin);
+    if (light->area) share *= face_texture(*light->area, ray.origin);
     return share;
 }
 }

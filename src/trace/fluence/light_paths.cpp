@@ -209,7 +209,7 @@ Box fog_bounds(const Snapshot& snapshot, const Box& reach) {
     return fog;
 }
 
-bool has_sources(const Snapshot& snapshot) { return !snapshot.lights.empty() || snapshot.environment; }
+bool has_lights(const Snapshot& snapshot) { return !snapshot.lights.empty() || snapshot.environment; }
 
 RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side) {
     RayStrata strata{side, {}};

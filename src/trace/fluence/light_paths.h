@@ -33,7 +33,7 @@ struct RayStrata {
 RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side);
 
 // Whether the snapshot has lights or an environment.
-bool has_sources(const Snapshot& snapshot);
+bool has_lights(const Snapshot& snapshot);
 
 // Accumulated results of paths.
 struct LightPathResult {

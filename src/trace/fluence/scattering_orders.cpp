@@ -37,7 +37,7 @@ ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths, uint32_t see
     LightPathRules rules;
     rules.reach = light_reach(snapshot);
     rules.orders = 65536, rules.seed = seed;
-    if (!has_sources(snapshot) || snapshot.media.empty()) return {};
+    if (!has_lights(snapshot) || snapshot.media.empty()) return {};
     const int64_t each = std::max<int64_t>(paths / batches, 1);
     const RayStrata strata = even_strata(snapshot, rules.reach, 1);
     std::vector<LightPathResult> results(batches);

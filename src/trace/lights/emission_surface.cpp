@@ -25,7 +25,7 @@ struct EmittedRays {
 };
 
 // `share`: density used in the balance heuristic over the actual one; 1 for places picked by power.
-void set_place(const SurfacePoint& point, const EmissivePlace& place, float share, size_t i, EmittedRays& to) {
+void set_place(const SurfacePoint& point, const EmissionSample& place, float share, size_t i, EmittedRays& to) {
     const vec3 offset = place.position - point.position;
     const float away = glm::length(offset), cosine = away > 0 ? glm::dot(point.normal, offset) / away : 0;
     const float chance = place.density * away * away + cosine / pi * place.line_density;
@@ -33,19 +33,19 @@ void set_place(const SurfacePoint& point, const EmissivePlace& place, float shar
     to.set(i, point, offset / away, away, point.base_color / pi * place.emission * (cosine * share / chance));
 }
 
-void shine(const Snapshot& snapshot, std::span<const SurfacePoint> points, const EmittedRays& to, float scale,
-           std::span<vec3> radiance) {
-    alignas(64) float shares[16];
-    std::fill_n(shares, 16, 1.0f);
-    if (snapshot.occluders && !snapshot.occluders->empty()) snapshot.occluders->transmission(to.rays, shares);
+void add_visible(const Snapshot& snapshot, std::span<const SurfacePoint> points, const EmittedRays& to, float scale,
+                 std::span<vec3> radiance) {
+    alignas(64) float visibility[16];
+    std::fill_n(visibility, 16, 1.0f);
+    if (snapshot.occluders && !snapshot.occluders->empty()) snapshot.occluders->transmission(to.rays, visibility);
     for (size_t i = 0; i < points.size(); ++i) {
-        if (!to.rays.active[i] || !(shares[i] > 0)) continue;
+        if (!to.rays.active[i] || !(visibility[i] > 0)) continue;
         const vec3 direction(to.rays.dx[i], to.rays.dy[i], to.rays.dz[i]);
         double depth = 0;
         for (const Medium& medium : snapshot.media)
             if (!only_emits(medium.optics))
                 depth += optical_depth(medium, {points[i].position, direction, to.rays.t_max[i]});
-        radiance[i] += to.light[i] * (scale * shares[i] * static_cast<float>(std::exp(-depth)));
+        radiance[i] += to.light[i] * (scale * visibility[i] * static_cast<float>(std::exp(-depth)));
     }
 }
 
@@ -62,7 +62,7 @@ void add_fire(const EmissiveBricks& fire, const Snapshot& snapshot, std::span<co
         const vec2 pair = pairs[i];
         RandomStream random = numbers_after(pair);
         const float x = random.next(), y = random.next(), along = random.next();
-        set_place(points[i], pick_emissive_place(fire, pair.x, {pair.y, x, y}), 1, i, picked);
+        set_place(points[i], sample_emission(fire, pair.x, {pair.y, x, y}), 1, i, picked);
         const vec3 direction = cosine_direction(points[i].normal, glm::fract(pair + vec2(0.618034f, 0.754878f)));
         for (size_t field = 0; field < fire.fields.size(); ++field) {
             const EmissionOnLine hit = emission_on_line(fire, field, {points[i].position, direction, infinity}, along);
@@ -70,17 +70,17 @@ void add_fire(const EmissiveBricks& fire, const Snapshot& snapshot, std::span<co
                 set_place(points[i], hit.place, hit.inverse_density * hit.place.line_density, i, on_lines[field]);
         }
     }
-    shine(snapshot, points, picked, scale, radiance);
-    for (const EmittedRays& to : on_lines) shine(snapshot, points, to, scale, radiance);
+    add_visible(snapshot, points, picked, scale, radiance);
+    for (const EmittedRays& to : on_lines) add_visible(snapshot, points, to, scale, radiance);
 }
 
-void add_surfaces(const EmissiveTriangles& glow, const Snapshot& snapshot, std::span<const SurfacePoint> points,
+void add_surfaces(const EmissiveTriangles& emissive, const Snapshot& snapshot, std::span<const SurfacePoint> points,
                   std::span<const vec2> pairs, float scale, std::span<vec3> radiance) {
     EmittedRays picked;
     for (size_t i = 0; i < points.size(); ++i) {
         const SurfacePoint& point = points[i];
         const EmissivePoint target =
-            pick_glow_point(glow, *snapshot.occluders, numbers_after(pairs[i]).next(), pairs[i]);
+            sample_triangles(emissive, *snapshot.occluders, numbers_after(pairs[i]).next(), pairs[i]);
         const vec3 offset = target.position - point.position;
         const float away = glm::length(offset), cosine = away > 0 ? glm::dot(point.normal, offset) / away : 0;
         if (!(cosine > 0)) continue;
@@ -88,7 +88,7 @@ void add_surfaces(const EmissiveTriangles& glow, const Snapshot& snapshot, std::
         const float seen = cosine * std::abs(glm::dot(target.normal, direction)) / (target.density * away * away);
         picked.set(i, point, direction, away * 0.9999f, point.base_color / pi * target.emission * seen);
     }
-    shine(snapshot, points, picked, scale, radiance);
+    add_visible(snapshot, points, picked, scale, radiance);
 }
 }
 

@@ -26,8 +26,8 @@ double brick_volume(const BrickPool& pool) {
 void add_field(uint32_t number, EmissiveBricks& fire, std::vector<double>& powers) {
     const Medium& field = fire.fields[number];
     const BrickPool& pool = *field.density.bricks;
-    EmissiveBricks::FieldChances& chances = fire.chances[number];
-    chances.per_volume.assign(pool.index.size(), 0);
+    EmissiveBricks::FieldPdfs& pdfs = fire.pdfs[number];
+    pdfs.per_volume.assign(pool.index.size(), 0);
     const double brightness = luminance(field.optics.emission.radiance) * brick_volume(pool);
     double brightest = 0;
     for (size_t cell = 0; cell < pool.index.size(); ++cell) {
@@ -39,7 +39,7 @@ void add_field(uint32_t number, EmissiveBricks& fire, std::vector<double>& power
     // Expected brightness integral of a line through the box: the mean of the bricks' maxima times the box's length.
     const double across = max_component(field.world_bounds.size());
     const double mean = brightest / static_cast<double>(pool.index.size());
-    chances.line_scale = static_cast<float>(mean * across > 0 ? 1 / (mean * across) : 0);
+    pdfs.line_scale = static_cast<float>(mean * across > 0 ? 1 / (mean * across) : 0);
 }
 
 vec3 point_in(const BrickPool& pool, uint32_t cell, vec3 v) {
@@ -48,25 +48,25 @@ vec3 point_in(const BrickPool& pool, uint32_t cell, vec3 v) {
     return vec3(pool.index_to_world * vec4(8.0f * (vec3(brick) + v), 1));
 }
 
-EmissivePlace place_in(const EmissiveBricks& fire, size_t field, size_t cell, vec3 position) {
+EmissionSample place_in(const EmissiveBricks& fire, size_t field, size_t cell, vec3 position) {
     const Medium& medium = fire.fields[field];
-    const EmissiveBricks::FieldChances& chances = fire.chances[field];
-    return {position, emission_at(medium, position), chances.per_volume[cell],
-            chances.line_scale * medium.density.bricks->maximum[cell]};
+    const EmissiveBricks::FieldPdfs& pdfs = fire.pdfs[field];
+    return {position, emission_at(medium, position), pdfs.per_volume[cell],
+            pdfs.line_scale * medium.density.bricks->maximum[cell]};
 }
 
 EmissiveBricks make_emissive_bricks(std::vector<Medium> fields) {
     EmissiveBricks fire;
     fire.fields = std::move(fields);
     std::vector<double> powers;
-    fire.chances.resize(fire.fields.size());
+    fire.pdfs.resize(fire.fields.size());
     for (uint32_t number = 0; number < fire.fields.size(); ++number) add_field(number, fire, powers);
     double total = 0;
     for (const double power : powers) fire.cumulative.push_back(total += power);
     for (double& sum : fire.cumulative) sum /= total;
     for (size_t i = 0; i < powers.size(); ++i) {
         const auto [number, cell] = fire.bricks[i];
-        fire.chances[number].per_volume[cell] =
+        fire.pdfs[number].per_volume[cell] =
             static_cast<float>(powers[i] / (total * brick_volume(*fire.fields[number].density.bricks)));
     }
     return fire;
@@ -87,14 +87,14 @@ std::shared_ptr<const EmissiveBricks> emissive_bricks(const Snapshot& snapshot) 
     return fire->bricks.empty() ? nullptr : fire;
 }
 
-EmissivePlace emissive_place_at(const EmissiveBricks& fire, size_t field, vec3 position) {
+EmissionSample emission_sample_at(const EmissiveBricks& fire, size_t field, vec3 position) {
     const BrickPool& pool = *fire.fields[field].density.bricks;
     const ivec3 brick = glm::clamp(ivec3(glm::floor(local_point(pool, position) / 8.0f)), ivec3(0), pool.size - 1);
     return place_in(fire, field, static_cast<size_t>((brick.x * pool.size.y + brick.y) * pool.size.z + brick.z),
                     position);
 }
 
-EmissivePlace pick_emissive_place(const EmissiveBricks& fire, float u, vec3 v) {
+EmissionSample sample_emission(const EmissiveBricks& fire, float u, vec3 v) {
     const auto found = std::ranges::upper_bound(fire.cumulative, static_cast<double>(u));
     const auto index = std::min<size_t>(static_cast<size_t>(found - fire.cumulative.begin()), fire.bricks.size() - 1);
     const auto [field, cell] = fire.bricks[index];
@@ -129,6 +129,6 @@ EmissionOnLine emission_on_line(const EmissiveBricks& fire, size_t field, const 
     const PickedCell picked = pick_cell(*fire.fields[field].density.bricks, line, u);
     if (!(picked.inverse_density > 0)) return {};
     const auto distance = static_cast<float>(picked.distance);
-    return {emissive_place_at(fire, field, line.at(distance)), distance, static_cast<float>(picked.inverse_density)};
+    return {emission_sample_at(fire, field, line.at(distance)), distance, static_cast<float>(picked.inverse_density)};
 }
 }

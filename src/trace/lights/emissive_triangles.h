@@ -12,7 +12,7 @@ struct Snapshot;
 struct EmissiveTriangle {
     int instance = 0, triangle = 0; // of the scene
     vec3 a{0}, b{0}, c{0};          // world corners
-    float chance = 0;               // probability of being picked
+    float probability = 0;          // probability of being picked
     float area = 0;                 // m²
 };
 
@@ -31,8 +31,8 @@ struct EmissivePoint {
     vec3 emission{0};            // radiance
     float density = 0;           // sampling density, 1/m²
 };
-EmissivePoint pick_glow_point(const EmissiveTriangles& glow, const Occluders& surfaces, float u, vec2 v);
+EmissivePoint sample_triangles(const EmissiveTriangles& emissive, const Occluders& surfaces, float u, vec2 v);
 
-// Density, 1/m², with which pick_glow_point() picks points of a triangle; 0 if it does not emit.
-float glow_density(const EmissiveTriangles& glow, int instance, int triangle);
+// Density, 1/m², with which sample_triangles() picks points of a triangle; 0 if it does not emit.
+float triangle_density(const EmissiveTriangles& emissive, int instance, int triangle);
 }

@@ -34,16 +34,16 @@ vec3 mean_in_texel(const Image<vec3>& image, int x, int y) {
 }
 
 // The map without its intensity, over one texel of the table.
-vec3 mean_in_texel(const BackgroundNow& map, const DirectionTable& table, int x, int y) {
+vec3 mean_in_texel(const BackgroundState& map, const DirectionTable& table, int x, int y) {
     if (map.kind == BackgroundKind::image) return mean_in_texel(*map.image, x, y);
     const double high = std::cos(std::numbers::pi * y / table.texels.y),
                  low = std::cos(std::numbers::pi * (y + 1) / table.texels.y);
-    BackgroundNow plain = map;
+    BackgroundState plain = map;
     plain.intensity = 1;
     return background_radiance(plain, vec3(0, 0.5 * (high + low), 0), vec2(0));
 }
 
-DirectionTable empty_table(const BackgroundNow& map) {
+DirectionTable empty_table(const BackgroundState& map) {
     DirectionTable table;
     if (map.kind == BackgroundKind::image) table.texels = map.image->size;
     if (map.kind == BackgroundKind::sky) table.texels = {1, gradient_rows};
@@ -71,7 +71,7 @@ void add_chances(const std::vector<double>& powers, double total, DirectionTable
     for (double& chance : table.rows) chance /= table.rows.back();
 }
 
-std::shared_ptr<const DirectionTable> make_table(const BackgroundNow& map) {
+std::shared_ptr<const DirectionTable> make_table(const BackgroundState& map) {
     DirectionTable table = empty_table(map);
     std::vector<double> powers(static_cast<size_t>(table.cells.x) * table.cells.y);
     dvec3 sum(0);
@@ -94,18 +94,18 @@ std::shared_ptr<const DirectionTable> make_table(const BackgroundNow& map) {
 }
 
 // The interval of a cumulative distribution that a number falls in, and its relative position there.
-struct PlaceInTable {
+struct CdfSample {
     int index = 0;
     double share = 0;
 };
-PlaceInTable place_in(const double* cumulative, int count, double u) {
+CdfSample sample_cdf(const double* cumulative, int count, double u) {
     const double* next = std::upper_bound(cumulative + 1, cumulative + count, u);
     const double low = next[-1], width = next[0] - low;
     return {static_cast<int>(next - cumulative) - 1, width > 0 ? std::clamp((u - low) / width, 0.0, 1.0) : 0.5};
 }
 }
 
-std::shared_ptr<const Environment> make_environment(BackgroundNow map, const Environment* previous) {
+std::shared_ptr<const Environment> make_environment(BackgroundState map, const Environment* previous) {
     auto environment = std::make_shared<Environment>();
     if (map.kind == BackgroundKind::image && (!map.image || map.image->empty())) return nullptr;
     if (!(map.intensity > 0)) return nullptr;
@@ -121,9 +121,9 @@ vec3 environment_radiance(const Environment& environment, vec3 direction) {
 
 EnvironmentSample sample_environment(const Environment& environment, vec2 u) {
     const DirectionTable& table = *environment.table;
-    const PlaceInTable row = place_in(table.rows.data(), table.cells.y, u.x);
+    const CdfSample row = sample_cdf(table.rows.data(), table.cells.y, u.x);
     const double* columns = &table.columns[static_cast<size_t>(row.index) * (table.cells.x + 1)];
-    const PlaceInTable column = place_in(columns, table.cells.x, u.y);
+    const CdfSample column = sample_cdf(columns, table.cells.x, u.y);
     const double height =
         row_edge(table, row.index) + row.share * (row_edge(table, row.index + 1) - row_edge(table, row.index));
     const double left = column_edge(table, column.index), right = column_edge(table, column.index + 1);

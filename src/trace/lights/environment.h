@@ -23,8 +23,8 @@ struct DirectionTable {
 
 struct Environment {
     std::string name;
-    BackgroundNow map; // never a backplate
-    vec3 scale{1};     // multiplies the map
+    BackgroundState map; // never a backplate
+    vec3 scale{1};       // multiplies the map
     float volume_scale = 1, surface_scale = 1;
     bool shadows = true;
     int casters = -1, lit = -1; // as in Light
@@ -34,7 +34,7 @@ struct Environment {
 };
 
 // Null if the map is black. Reuses the sampling table of `previous` (may be null) if it has the same image.
-std::shared_ptr<const Environment> make_environment(BackgroundNow map, const Environment* previous = nullptr);
+std::shared_ptr<const Environment> make_environment(BackgroundState map, const Environment* previous = nullptr);
 
 // The scene's environment at a moment; `links`: its sets of casters (x) and of lit instances (y). Null if there is none
 // or it is black. Throws Error (refused) if its radiance overflows a float.

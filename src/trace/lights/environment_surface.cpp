@@ -18,23 +18,23 @@ vec3 weighted(const SurfacePoint& point, vec3 direction, vec3 radiance, float de
     return density + cosine > 0 ? point.base_color * radiance * (cosine / pi / (density + cosine / pi)) : vec3(0);
 }
 
-void shine(const Snapshot& snapshot, std::span<const SurfacePoint> points, const SkyDirections& sky,
-           std::span<vec3> radiance, float scale) {
+void add_visible(const Snapshot& snapshot, std::span<const SurfacePoint> points, const SkyDirections& sky,
+                 std::span<vec3> radiance, float scale) {
     Occluders::ShadowRays rays{};
-    alignas(64) float shares[16];
-    std::fill_n(shares, 16, 1.0f);
+    alignas(64) float visibility[16];
+    std::fill_n(visibility, 16, 1.0f);
     for (size_t i = 0; i < points.size(); ++i)
         if (max_component(sky.light[i]) > 0)
             rays.set(i, {off_surface(points[i].position, points[i].face_normal, sky.direction[i]), sky.direction[i],
                          infinity});
-    if (const auto& casters = shadow_casters(*snapshot.environment, snapshot)) casters->transmission(rays, shares);
+    if (const auto& casters = shadow_casters(*snapshot.environment, snapshot)) casters->transmission(rays, visibility);
     for (size_t i = 0; i < points.size(); ++i) {
-        if (!rays.active[i] || !(shares[i] > 0)) continue;
+        if (!rays.active[i] || !(visibility[i] > 0)) continue;
         double depth = 0;
         for (const Medium& medium : snapshot.media)
             if (!only_emits(medium.optics))
                 depth += optical_depth(medium, {points[i].position, sky.direction[i], infinity});
-        radiance[i] += sky.light[i] * (scale * shares[i] * static_cast<float>(std::exp(-depth)));
+        radiance[i] += sky.light[i] * (scale * visibility[i] * static_cast<float>(std::exp(-depth)));
     }
 }
 }
@@ -60,8 +60,8 @@ void add_environment(const Snapshot& snapshot, std::span<const SurfacePoint> poi
                 weighted(points[i], by_surface.direction[i], environment_radiance(environment, by_surface.direction[i]),
                          environment_density(environment, by_surface.direction[i]));
         }
-        shine(snapshot, points, by_light, radiance, scale);
-        shine(snapshot, points, by_surface, radiance, scale);
+        add_visible(snapshot, points, by_light, radiance, scale);
+        add_visible(snapshot, points, by_surface, radiance, scale);
     }
 }
 }

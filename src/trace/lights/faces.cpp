@@ -43,7 +43,7 @@ void aim(const Snapshot& snapshot, const Light& light, std::span<const SurfacePo
         if (!(cosine > 0) || !(sample.steradians > 0)) continue;
         const vec3 from = off_surface(point.position, point.face_normal, sample.direction);
         to.rays.set(i, {from, sample.direction, sample.distance * 0.9999f});
-        const vec3 picture = face_picture(*light.area, point.position + sample.distance * sample.direction);
+        const vec3 picture = face_texture(*light.area, point.position + sample.distance * sample.direction);
         to.light[i] = radiance * (sample.steradians * cosine) * picture;
     }
 }
@@ -56,16 +56,16 @@ void add_face_light(const Snapshot& snapshot, const Light& light, bool dimmed, s
     FaceRays to;
     for (size_t k = 0; k < u.size() / points.size(); ++k) {
         aim(snapshot, light, points, u, k, to);
-        alignas(64) float shares[16];
-        std::fill_n(shares, 16, 1.0f);
-        if (occluders) occluders->transmission(to.rays, shares);
+        alignas(64) float visibility[16];
+        std::fill_n(visibility, 16, 1.0f);
+        if (occluders) occluders->transmission(to.rays, visibility);
         for (size_t i = 0; i < points.size(); ++i) {
-            if (!to.rays.active[i] || !(shares[i] > 0)) continue;
+            if (!to.rays.active[i] || !(visibility[i] > 0)) continue;
             const Ray way{points[i].position, {to.rays.dx[i], to.rays.dy[i], to.rays.dz[i]}, to.rays.t_max[i]};
             double depth = 0;
             for (const Medium& medium : snapshot.media)
                 if (dimmed && !only_emits(medium.optics)) depth += optical_depth(medium, way);
-            irradiance[i] += to.light[i] * (shares[i] * static_cast<float>(std::exp(-depth)));
+            irradiance[i] += to.light[i] * (visibility[i] * static_cast<float>(std::exp(-depth)));
         }
     }
 }

@@ -21,17 +21,17 @@ HWY_INLINE Vec3s across(const LightFilter& filter, const LightAxes& axes, const 
 }
 
 // Linear interpolation between table entries `index` and `index + 1`.
-HWY_INLINE Floats between_neighbours(const float* values, const Ints& index, const Floats& share) {
+HWY_INLINE Floats lerp_entries(const float* values, const Ints& index, const Floats& share) {
     Floats first, second;
     gather_pairs(values, index, first, second);
-    return fused(share, second - first, first);
+    return fma(share, second - first, first);
 }
 
-// Same as profile_share() of scene/photometry/ies_profile.h. Half-angle formulas keep it well conditioned.
+// Same as profile_factor() of scene/photometry/ies_profile.h. Half-angle formulas keep it well conditioned.
 HWY_INLINE Floats profile_share16(const IesProfile& profile, const Vec3s& at) {
     constexpr float tiny = 1e-20f, rounding = 1e-5f;
-    const Floats sine = sqrt(fused(at.x, at.x, at.y * at.y));
-    const Floats half = atan(sine / max(abs(at.z) + sqrt(fused(at.z, at.z, sine * sine)), tiny)) * 2.0f;
+    const Floats sine = sqrt(fma(at.x, at.x, at.y * at.y));
+    const Floats half = atan(sine / max(abs(at.z) + sqrt(fma(at.z, at.z, sine * sine)), tiny)) * 2.0f;
     const Floats vertical = select(at.z < 0.0f, pi - half, half);
     const float rows = static_cast<float>(profile.rows);
     const Floats row = max(min((vertical - profile.first) * profile.rows_per_radian, rows - 1), 0.0f);
@@ -39,7 +39,7 @@ HWY_INLINE Floats profile_share16(const IesProfile& profile, const Vec3s& at) {
     const Mask16 inside = (vertical >= profile.first - rounding) & (vertical <= profile.last + rounding);
     const Floats share = row - lower;
     const float* values = profile.shares.data();
-    if (profile.columns == 1) return zero_unless(inside, between_neighbours(values, truncate(lower), share));
+    if (profile.columns == 1) return zero_unless(inside, lerp_entries(values, truncate(lower), share));
 
     const Floats turned = atan(at.y / max(abs(at.x) + sine, tiny)) * 2.0f;
     const Floats around = select(at.x < 0.0f, pi - turned, turned);
@@ -47,30 +47,30 @@ HWY_INLINE Floats profile_share16(const IesProfile& profile, const Vec3s& at) {
     const float columns = static_cast<float>(profile.columns);
     const Floats column = max(min(horizontal * profile.columns_per_radian, columns - 1), 0.0f);
     const Floats before = min(floor(column), columns - 2);
-    const Ints index = truncate(fused(before, rows, lower));
-    const Floats one = between_neighbours(values, index, share);
-    const Floats next = between_neighbours(values + profile.rows, index, share);
-    return zero_unless(inside, fused(column - before, next - one, one));
+    const Ints index = truncate(fma(before, rows, lower));
+    const Floats one = lerp_entries(values, index, share);
+    const Floats next = lerp_entries(values + profile.rows, index, share);
+    return zero_unless(inside, fma(column - before, next - one, one));
 }
 
 // Texel positions of directions in a gobo, and lookups there.
-struct GoboPlaces {
+struct GoboLookup {
     const Gobo::Level& level;
     Ints index;
     Floats right, down; // interpolation weights of the next texel
     Mask16 ahead;       // directions that hit the gobo's plane
 
-    HWY_INLINE GoboPlaces(const LightFilter& filter, const Vec3s& direction, int which)
+    HWY_INLINE GoboLookup(const LightFilter& filter, const Vec3s& direction, int which)
         : level(filter.gobo->levels[static_cast<size_t>(which)]) {
         const Vec3s at = across(filter, filter.gobo_axes, direction);
         ahead = at.z > 1e-6f;
         const Floats inverse = 1.0f / max(at.z, 1e-6f);
-        const auto place = [&](const Floats& tangent, float half, float texels, int size) HWY_ATTR {
-            const Floats texel = fused(tangent * inverse, 0.5f * texels / half, 0.5f * texels + 0.5f);
+        const auto texel_of = [&](const Floats& tangent, float half, float texels, int size) HWY_ATTR {
+            const Floats texel = fma(tangent * inverse, 0.5f * texels / half, 0.5f * texels + 0.5f);
             return max(min(texel, static_cast<float>(size - 1)), 0.0f);
         };
-        const Floats x = place(at.x, filter.gobo_half.x, level.texels.x, level.size.x);
-        const Floats y = place(-at.y, filter.gobo_half.y, level.texels.y, level.size.y);
+        const Floats x = texel_of(at.x, filter.gobo_half.x, level.texels.x, level.size.x);
+        const Floats y = texel_of(-at.y, filter.gobo_half.y, level.texels.y, level.size.y);
         const Floats i = min(floor(x), static_cast<float>(level.size.x - 2));
         const Floats j = min(floor(y), static_cast<float>(level.size.y - 2));
         right = x - i, down = y - j;
@@ -78,8 +78,8 @@ struct GoboPlaces {
     }
     HWY_INLINE Floats value(int plane) const {
         const float* texels = level.plane(plane);
-        const Floats top = between_neighbours(texels, index, right);
-        return zero_unless(ahead, fused(down, between_neighbours(texels + level.size.x, index, right) - top, top));
+        const Floats top = lerp_entries(texels, index, right);
+        return zero_unless(ahead, fma(down, lerp_entries(texels + level.size.x, index, right) - top, top));
     }
 };
 
@@ -88,13 +88,13 @@ HWY_INLINE Floats filter_channel(const LightFilter& filter, const Vec3s& directi
     Floats factor = 1.0f;
     if (filter.profile) factor = profile_share16(*filter.profile, across(filter, filter.profile_axes, direction));
     if (!filter.gobo) return factor;
-    return factor * GoboPlaces(filter, direction, level).value(std::min(channel, filter.gobo->planes - 1));
+    return factor * GoboLookup(filter, direction, level).value(std::min(channel, filter.gobo->planes - 1));
 }
 
 // The gobo's color; the factor's largest channel (strength), and the other channels relative to it (tint).
 HWY_INLINE Vec3s gobo_color(const LightFilter& filter, const Vec3s& direction, int level) {
-    const GoboPlaces places(filter, direction, level);
-    return {places.value(0), places.value(1), places.value(2)};
+    const GoboLookup lookup(filter, direction, level);
+    return {lookup.value(0), lookup.value(1), lookup.value(2)};
 }
 HWY_INLINE Floats filter_strength(const LightFilter& filter, const Vec3s& direction, int level = 0) {
     if (!has_colors(filter)) return filter_channel(filter, direction, 0, level);

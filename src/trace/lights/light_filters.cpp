@@ -25,7 +25,7 @@ std::shared_ptr<const Gobo> gobo_of(const GoboSource& source, int frame, Missing
     if (previous)
         for (const Light& light : previous->lights)
             for (const auto& known :
-                 {light.filter ? light.filter->gobo : nullptr, light.area ? light.area->picture : nullptr})
+                 {light.filter ? light.filter->gobo : nullptr, light.area ? light.area->texture : nullptr})
                 if (known && known->file == key) return known;
     std::string note;
     auto gobo = make_gobo(read_file(file, largest_gobo_file), source.space, file.string(), note);
@@ -40,11 +40,11 @@ void add_filter(const LightSource& source, Moment moment, vec3 up, MissingFrame 
     auto filter = std::make_shared<LightFilter>();
     filter->direction = light.direction;
     filter->profile = source.profile;
-    filter->profile_axes = light_axes(light.direction, up, source.profile_turn.at(moment.seconds));
+    filter->profile_axes = light_axes(light.direction, up, source.profile_rotation.at(moment.seconds));
     if (source.gobo) {
         const GoboSource& gobo = *source.gobo;
         filter->gobo = gobo_of(gobo, moment.frame, missing, previous);
-        filter->gobo_axes = light_axes(light.direction, up, gobo.turn.at(moment.seconds));
+        filter->gobo_axes = light_axes(light.direction, up, gobo.rotation.at(moment.seconds));
         const float widest = glm::radians(89.0f);
         const float half = std::tan(std::min(light.outer_cone, widest)) * gobo.scale.at(moment.seconds);
         filter->gobo_half = std::max(half, 1e-6f) * vec2(1, filter->gobo->aspect);

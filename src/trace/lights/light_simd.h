@@ -26,7 +26,7 @@ HWY_INLINE Vec3s tint_at(const Light& light, const Vec3s& position) {
 }
 
 // Same as arrival() of scene/light.h. `cone`: the light's cone_falloff().
-HWY_INLINE LightSamples arriving(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
+HWY_INLINE LightSamples arrival16(const Light& light, const ConeFalloff& cone, const Vec3s& position) {
     if (is_distant(light)) return {splat(-light.direction), infinity, 1.0f};
     const Vec3s offset = splat(light.position) - position;
     const float reach = capped_radius(light);
@@ -39,7 +39,7 @@ HWY_INLINE LightSamples arriving(const Light& light, const ConeFalloff& cone, co
     }
     if (has_cone(light)) {
         const Floats cosine = -dot(result.to_light, splat(light.direction));
-        const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
+        const Floats edge = max(min(fma(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
         result.amount = result.amount * edge * edge;
     }
     if (light.filter) result.amount = result.amount * filter_strength(*light.filter, result.to_light * -1.0f);

@@ -104,7 +104,7 @@ bool beside_lamp(const View& view, vec2 center) {
     });
 }
 
-SamplePoint lamp_sample(const View& view, vec2 center, SamplePlace place) {
+SamplePoint lamp_sample(const View& view, vec2 center, SampleIndex place) {
     const float radius = view.filter_radius;
     const Beams seen = beams_in(view, center);
     const float filter_share = seen.count ? 0.5f : 1.0f;

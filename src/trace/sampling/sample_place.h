@@ -3,7 +3,7 @@
 #include <cstdint>
 
 namespace tyndall {
-struct SamplePlace {
+struct SampleIndex {
     uint32_t sequence; // identifies the sequence
     uint32_t index;    // place in it
 };

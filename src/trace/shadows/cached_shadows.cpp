@@ -35,7 +35,7 @@ std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snaps
     return cached(snapshot, "shadow volumes", std::move(key.add(off)), [&] {
         LightPoint point = center_of(light);
         point.at += off;
-        return make_shadow_volumes(cached_shadow_mesh(snapshot, light), point, shadow_reach(light));
+        return make_shadow_volumes(cached_shadow_mesh(snapshot, light), point, shadow_cone(light));
     });
 }
 

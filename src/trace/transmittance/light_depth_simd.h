@@ -14,14 +14,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 // Straight paths from 16 points to the light.
-struct LightPaths {
+struct Segments16 {
     Vec3s origin, direction; // unit directions
     Floats length;
 };
 
 inline constexpr float sun_distance = 1e12f; // meters: beyond all fog, and its square is still finite
 
-HWY_INLINE LightPaths light_paths(const Light& light, const Vec3s& point) {
+HWY_INLINE Segments16 light_segments(const Light& light, const Vec3s& point) {
     if (is_distant(light)) return {point, splat(-light.direction), sun_distance};
     const Vec3s towards = splat(light.position) - point;
     const Floats distance = max(sqrt(dot(towards, towards)), 1e-12f);
@@ -40,13 +40,13 @@ HWY_INLINE void clip_axis(const Floats& origin, const Floats& direction, float l
 }
 
 // The part of each path inside a medium's box.
-HWY_INLINE Interval<Floats> inside_box(const Medium& medium, const LightPaths& paths) {
+HWY_INLINE Interval<Floats> inside_box(const Medium& medium, const Segments16& paths) {
     const mat4& m = medium.density.world_to_local;
     const Vec3s origin = transform_points(m, paths.origin);
     const Vec3s& d = paths.direction;
-    const Vec3s direction = {fused(d.z, m[2].x, fused(d.y, m[1].x, d.x * m[0].x)),
-                             fused(d.z, m[2].y, fused(d.y, m[1].y, d.x * m[0].y)),
-                             fused(d.z, m[2].z, fused(d.y, m[1].z, d.x * m[0].z))};
+    const Vec3s direction = {fma(d.z, m[2].x, fma(d.y, m[1].x, d.x * m[0].x)),
+                             fma(d.z, m[2].y, fma(d.y, m[1].y, d.x * m[0].y)),
+                             fma(d.z, m[2].z, fma(d.y, m[1].z, d.x * m[0].z))};
     Interval<Floats> range{0.0f, paths.length};
     clip_axis(origin.x, direction.x, medium.density.bounds.low.x, medium.density.bounds.high.x, range);
     clip_axis(origin.y, direction.y, medium.density.bounds.low.y, medium.density.bounds.high.y, range);
@@ -66,16 +66,16 @@ HWY_INLINE Floats mean_height_density(const Medium& medium, const Floats& y0, co
     const Floats below = select(level, select(low > base, 0.0f, 1.0f), (min(high, base) - min(low, base)) * inverse);
     const float thinning = 1 / medium.density.height_falloff;
     const Floats density = exp((base - from) * thinning) * mean_transmittance((to - from) * thinning);
-    return fused(above, density, below);
+    return fma(above, density, below);
 }
 
 // Exact optical depth of homogeneous and height fog.
-HWY_INLINE Floats analytic_depth16(const Medium& medium, const LightPaths& paths) {
+HWY_INLINE Floats analytic_depth16(const Medium& medium, const Segments16& paths) {
     const Interval<Floats> range = inside_box(medium, paths);
     const Floats length = max(range.high - range.low, 0.0f) * grey_extinction(medium.optics);
     if (medium.density.kind == DensityKind::homogeneous) return length;
-    const Floats y0 = fused(paths.direction.y, range.low, paths.origin.y);
-    const Floats y1 = fused(paths.direction.y, range.high, paths.origin.y);
+    const Floats y0 = fma(paths.direction.y, range.low, paths.origin.y);
+    const Floats y1 = fma(paths.direction.y, range.high, paths.origin.y);
     return zero_unless(length > 0.0f, length * mean_height_density(medium, y0, y1));
 }
 
@@ -119,18 +119,18 @@ HWY_INLINE Floats trilinear16(const std::vector<float>& values, ivec3 size, cons
     const auto across = [&](const float* from) HWY_ATTR {
         Floats a, b, c, d;
         gather_pairs(from, corner, a, b), gather_pairs(from + row, corner, c, d);
-        return mixed(mixed(a, b, share_u), mixed(c, d, share_u), share_v);
+        return lerp(lerp(a, b, share_u), lerp(c, d, share_u), share_v);
     };
-    return mixed(across(values.data()), across(values.data() + layer), share_w);
+    return lerp(across(values.data()), across(values.data() + layer), share_w);
 }
 
 // Depth of the brick media from the grid: 0 in front of the fog and beside it, all of it behind.
 HWY_INLINE Floats grid_depth16(const LightDepthGrid& grid, const Vec3s& point) {
     Mask16 valid = Floats(0.0f) < Floats(1.0f);
     const Vec3s coordinates = grid_coordinates(grid, point, valid);
-    const Floats u = fused(coordinates.x, grid.scale.x, grid.offset.x);
-    const Floats v = fused(coordinates.y, grid.scale.y, grid.offset.y);
-    const Floats w = fused(coordinates.z, grid.scale.z, grid.offset.z);
+    const Floats u = fma(coordinates.x, grid.scale.x, grid.offset.x);
+    const Floats v = fma(coordinates.y, grid.scale.y, grid.offset.y);
+    const Floats w = fma(coordinates.z, grid.scale.z, grid.offset.z);
     constexpr float slack = 1e-3f; // of a cell: borders belong to the grid
     valid = valid & (u >= -slack) & (u <= static_cast<float>(grid.size.x - 1) + slack) & (v >= -slack) &
             (v <= static_cast<float>(grid.size.y - 1) + slack) & (w > 0.0f);
@@ -145,12 +145,12 @@ HWY_INLINE Vec3s froxel_coordinates(const LightDepthFroxels& froxels, const Vec3
     const Vec3s offset = point - splat(camera.position);
     const Floats z = dot(offset, splat(camera.forward));
     const Floats inverse = camera.ortho_height > 0 ? Floats(1.0f) : 1.0f / max(z, 1e-20f);
-    const Floats u = fused(dot(offset, splat(camera.right)) * inverse, froxels.scale.x, froxels.offset.x);
-    const Floats v = fused(dot(offset, splat(camera.up)) * inverse, froxels.scale.y, froxels.offset.y);
+    const Floats u = fma(dot(offset, splat(camera.right)) * inverse, froxels.scale.x, froxels.offset.x);
+    const Floats v = fma(dot(offset, splat(camera.up)) * inverse, froxels.scale.y, froxels.offset.y);
     // The root of a s + (1 - a) s² = share, without cancellation.
     const float a = froxels.first;
     const Floats share = (z - froxels.near) * (1 / (froxels.far - froxels.near));
-    const Floats root = sqrt(max(fused(share, 4 * (1 - a), a * a), 0.0f));
+    const Floats root = sqrt(max(fma(share, 4 * (1 - a), a * a), 0.0f));
     const Floats w = share * 2.0f / (root + a) * static_cast<float>(froxels.size.z - 1);
     const auto within = [](const Floats& x, int size)
                             HWY_ATTR { return (x >= 0.0f) & (x <= static_cast<float>(size - 1)); };
@@ -186,7 +186,7 @@ HWY_INLINE Floats light_depth16(const LightDepth& depth, const Vec3s& point, con
     if (depth.method == LightTransmittance::average) return zero_unless(active, depth.average * depth.scale);
     Floats sum = 0.0f;
     if (!depth.analytic.empty()) {
-        const LightPaths paths = light_paths(depth.light, point);
+        const Segments16 paths = light_segments(depth.light, point);
         for (const Medium& medium : depth.analytic) sum = sum + analytic_depth16(medium, paths);
     }
     if (!depth.grid.empty()) sum = sum + grid_depth16(depth.grid, point);

@@ -15,7 +15,7 @@ namespace {
 constexpr float voxels_per_sample = 1.5f;
 
 // Optical depth of one medium along the paths, by the midpoint rule inside its bricks' box.
-Floats depth_along(const Medium& medium, const LightPaths& paths) {
+Floats depth_along(const Medium& medium, const Segments16& paths) {
     if (medium.density.bricks->empty()) return 0.0f;
     const Box& box = medium.density.bricks->bounds;
     Interval<Floats> range{0.0f, paths.length};
@@ -33,8 +33,8 @@ Floats depth_along(const Medium& medium, const LightPaths& paths) {
     const Floats step = length * (1 / static_cast<float>(samples));
     Floats sum = 0.0f;
     for (int i = 0; i < samples; ++i) {
-        const Floats at = fused(step, static_cast<float>(i) + 0.5f, range.low);
-        sum = sum + density16(medium, fused(paths.direction, at, paths.origin));
+        const Floats at = fma(step, static_cast<float>(i) + 0.5f, range.low);
+        sum = sum + density16(medium, fma(paths.direction, at, paths.origin));
     }
     return zero_unless(length > 0.0f, sum * step * grey_extinction(medium.optics));
 }
@@ -51,7 +51,7 @@ void fill_corners(std::span<const Medium* const> media, const Light& light, int6
         for (int i = 0; i < 16; ++i) column[i] = static_cast<float>(std::min(first + i, froxels.size.x - 1));
         const Floats right = (load(column) - froxels.offset.x) * (spread / froxels.scale.x);
         const vec3 middle = camera.position + z * camera.forward + up * camera.up;
-        const LightPaths paths = light_paths(light, fused(splat(camera.right), right, splat(middle)));
+        const Segments16 paths = light_segments(light, fma(splat(camera.right), right, splat(middle)));
         Floats sum = 0.0f;
         for (const Medium* medium : media) sum = sum + depth_along(*medium, paths);
         store(sum, found);

@@ -53,7 +53,7 @@ Floats depth_between(const Medium& medium, const Columns& columns, float from, f
     Floats sum = 0.0f;
     for (int i = 0; i < samples; ++i) {
         const float w = from + (static_cast<float>(i) + 0.5f) * step;
-        sum = sum + density16(medium, fused(columns.direction, w, columns.origin));
+        sum = sum + density16(medium, fma(columns.direction, w, columns.origin));
     }
     return sum * (step * grey_extinction(medium.optics));
 }

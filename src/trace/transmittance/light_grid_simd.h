@@ -34,8 +34,8 @@ HWY_INLINE void fill_around(const GridColumns& columns, const Vec3s& point, cons
     Mask16 valid = active;
     const Vec3s at = grid_coordinates(grid, point, valid);
     if (!any(valid)) return;
-    const Range across = range_of(fused(at.x, grid.scale.x, grid.offset.x), valid, grid.size.x);
-    const Range down = range_of(fused(at.y, grid.scale.y, grid.offset.y), valid, grid.size.y);
+    const Range across = range_of(fma(at.x, grid.scale.x, grid.offset.x), valid, grid.size.x);
+    const Range down = range_of(fma(at.y, grid.scale.y, grid.offset.y), valid, grid.size.y);
     for (int row = down.low; row <= down.high; ++row)
         for (int i = across.low / 16; i <= across.high / 16; ++i)
             if (const int packet = row * columns.packets_across() + i; !columns.is_filled(packet)) columns.fill(packet);

@@ -64,7 +64,7 @@ vec3 parsed_value(const Property& property, std::string_view text, std::string_v
 }
 }
 
-Thing parse_thing(const Scene& scene, std::string_view path) {
+PartRef parse_part(const Scene& scene, std::string_view path) {
     if (path == "scene") return {Part::scene, 0};
     const size_t slash = path.find('/');
     const Part part = part_of(path.substr(0, slash));

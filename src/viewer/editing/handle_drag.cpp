@@ -58,7 +58,7 @@ std::vector<Action> drag_actions(const HandleDrag& drag, vec2 to) {
 
 std::vector<vec2> beam_ring(const Camera& camera, ivec2 size, const Scene& scene, size_t light, double seconds,
                             float metres) {
-    const LightPlace place = light_place(scene, light, seconds);
+    const LightPlacement place = light_placement(scene, light, seconds);
     const float angle = std::min(scene.lights[light].outer_cone.at(seconds), 0.49f * pi);
     const vec3 middle = place.position + metres * place.direction;
     const vec3 aside = std::abs(place.direction.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);

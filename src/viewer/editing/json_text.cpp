@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-[[noreturn]] void fail_at(size_t place) { refuse("byte " + std::to_string(place), "not valid JSON"); }
+[[noreturn]] void fail_at(size_t offset) { refuse("byte " + std::to_string(offset), "not valid JSON"); }
 
 bool is_blank(char c) { return c == ' ' || c == '\t'; }
 bool is_space(char c) { return is_blank(c) || c == '\n' || c == '\r'; }
@@ -121,16 +121,16 @@ std::string replaced(std::string_view text, TextSpan span, std::string_view by) 
 }
 
 // The leading whitespace of the line at a position.
-std::string_view margin_at(std::string_view text, size_t place) {
-    const size_t start = text.substr(0, place).rfind('\n') + 1; // npos + 1 is 0
+std::string_view margin_at(std::string_view text, size_t offset) {
+    const size_t start = text.substr(0, offset).rfind('\n') + 1; // npos + 1 is 0
     size_t end = start;
-    while (end < place && is_blank(text[end])) ++end;
+    while (end < offset && is_blank(text[end])) ++end;
     return text.substr(start, end - start);
 }
 
-bool on_own_line(std::string_view text, size_t place) {
-    const size_t line = text.substr(0, place).rfind('\n');
-    return line != text.npos && all_blank(text.substr(line + 1, place - line - 1));
+bool on_own_line(std::string_view text, size_t offset) {
+    const size_t line = text.substr(0, offset).rfind('\n');
+    return line != text.npos && all_blank(text.substr(line + 1, offset - line - 1));
 }
 
 std::string colon_of(std::string_view text, const std::vector<Element>& elements) {
@@ -188,10 +188,10 @@ std::string inserted(std::string_view text, TextSpan container, const std::vecto
                      std::string_view element) {
     if (elements.empty()) return into_empty(text, container, element);
     if (index >= elements.size()) return appended(text, container, elements, element);
-    const size_t place = elements[index].begin;
-    const std::string gap = on_own_line(text, place) ? line_end_of(text) + std::string(margin_at(text, place))
-                                                     : gap_between(text, elements);
-    return replaced(text, {place, place}, std::string(element) + "," + gap);
+    const size_t offset = elements[index].begin;
+    const std::string gap = on_own_line(text, offset) ? line_end_of(text) + std::string(margin_at(text, offset))
+                                                      : gap_between(text, elements);
+    return replaced(text, {offset, offset}, std::string(element) + "," + gap);
 }
 }
 

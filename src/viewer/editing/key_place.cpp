@@ -4,7 +4,7 @@
 #include <cmath>
 
 namespace tyndall {
-KeyPlace key_place(std::span<const float> times, bool loop, double seconds, double frame_rate) {
+KeyLookup find_key(std::span<const float> times, bool loop, double seconds, double frame_rate) {
     const double first = times.front(), length = times.back() - first, reach = 0.05 / frame_rate;
     const bool turns = loop && length > 0;
     if (turns) seconds = first + (seconds - first) - std::floor((seconds - first) / length) * length;

@@ -3,14 +3,14 @@
 #include <span>
 
 namespace tyndall {
-struct KeyPlace {
-    size_t index = 0;   // of the key, or of the key before which a new one is inserted
-    bool there = false; // a key exists at that time
-    bool seam = false;  // of a loop: its first and last key are the same time
-    float time = 0;     // of the new key
+struct KeyLookup {
+    size_t index = 0;    // of the key, or of the key before which a new one is inserted
+    bool exists = false; // a key exists at that time
+    bool seam = false;   // of a loop: its first and last key are the same time
+    float time = 0;      // of the new key
 };
 
 // Keys within a twentieth of a frame count as being at the time. A time outside a loop is wrapped into it. `times`
 // ascend and are not empty.
-KeyPlace key_place(std::span<const float> times, bool loop, double seconds, double frame_rate);
+KeyLookup find_key(std::span<const float> times, bool loop, double seconds, double frame_rate);
 }

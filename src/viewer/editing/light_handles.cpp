@@ -30,7 +30,7 @@ vec3 across_view(const Camera& camera, ivec2 size, vec3 place, vec2 pixel) {
 
 // The point nearest to a pixel on the projection of an axis through a point into the image.
 std::optional<vec2> on_drawn_axis(const Camera& camera, ivec2 size, vec3 place, vec3 axis, vec2 pixel) {
-    const vec3 step = 16 * pixel_span(camera, size, place) * axis;
+    const vec3 step = 16 * pixel_size(camera, size, place) * axis;
     const std::optional<vec2> a = pixel_of(camera, size, place), b = pixel_of(camera, size, place + step);
     if (!a || !b || *a == *b) return {};
     const vec2 along = glm::normalize(*b - *a);
@@ -50,10 +50,11 @@ std::optional<float> along_axis(const Ray& ray, vec3 place, vec3 axis) {
 }
 
 std::vector<LightIcon> light_icons(const Camera& camera, ivec2 size, const Scene& scene, double seconds,
-                                   vec3 sun_place) {
+                                   vec3 sun_position) {
     std::vector<LightIcon> icons;
     for (size_t i = 0; i < scene.lights.size(); ++i) {
-        LightIcon icon{i, is_nowhere(scene.lights[i]) ? sun_place : light_place(scene, i, seconds).position, {}, 0};
+        LightIcon icon{
+            i, is_nowhere(scene.lights[i]) ? sun_position : light_placement(scene, i, seconds).position, {}, 0};
         icon.depth = glm::dot(icon.place - camera.position, camera.forward);
         const std::optional<vec2> pixel = pixel_of(camera, size, icon.place);
         if (!pixel || !(icon.depth > 0)) continue;
@@ -64,10 +65,10 @@ std::vector<LightIcon> light_icons(const Camera& camera, ivec2 size, const Scene
 }
 
 std::optional<size_t> pick_light(const Camera& camera, ivec2 size, vec2 pixel, const Scene& scene, double seconds,
-                                 float reach, vec3 sun_place) {
+                                 float reach, vec3 sun_position) {
     std::optional<LightIcon> best;
     float nearest = reach;
-    for (const LightIcon& icon : light_icons(camera, size, scene, seconds, sun_place)) {
+    for (const LightIcon& icon : light_icons(camera, size, scene, seconds, sun_position)) {
         const float away = glm::distance(icon.pixel, pixel);
         if (!(away < nearest || (away == nearest && (!best || icon.depth < best->depth)))) continue;
         nearest = away, best = icon;
@@ -75,7 +76,7 @@ std::optional<size_t> pick_light(const Camera& camera, ivec2 size, vec2 pixel, c
     return best ? std::optional(best->light) : std::nullopt;
 }
 
-float pixel_span(const Camera& camera, ivec2 size, vec3 point) {
+float pixel_size(const Camera& camera, ivec2 size, vec3 point) {
     const float rows = static_cast<float>(size.y);
     if (camera.ortho_height > 0) return camera.ortho_height / rows;
     return 2 * glm::dot(point - camera.position, camera.forward) * std::tan(0.5f * camera.vertical_fov) / rows;
@@ -83,7 +84,7 @@ float pixel_span(const Camera& camera, ivec2 size, vec3 point) {
 
 std::vector<HandlePoint> light_handles(const Camera& camera, ivec2 size, const LightIcon& icon, const Scene& scene,
                                        double seconds, float length) {
-    const float metres = length * pixel_span(camera, size, icon.place);
+    const float metres = length * pixel_size(camera, size, icon.place);
     const bool moves = has(scene, icon.light, "position");
     std::vector<HandlePoint> handles;
     if (moves) handles.push_back({Handle::view, icon.pixel});
@@ -93,7 +94,8 @@ std::vector<HandlePoint> light_handles(const Camera& camera, ivec2 size, const L
     };
     for (const Handle axis : {Handle::x, Handle::y, Handle::z})
         if (moves) add(axis, axis_of(axis));
-    if (is_aimed(scene.lights[icon.light])) add(Handle::direction, light_place(scene, icon.light, seconds).direction);
+    if (is_aimed(scene.lights[icon.light]))
+        add(Handle::direction, light_placement(scene, icon.light, seconds).direction);
     return handles;
 }
 
@@ -133,14 +135,14 @@ std::vector<Edit> drag_light(const Camera& camera, ivec2 size, const Scene& scen
         return has(scene, icon.light, property) ? std::vector{Edit{Part::light, icon.light, property, value, seconds}}
                                                 : std::vector<Edit>{};
     };
-    const LightPlace now = light_place(scene, icon.light, seconds);
+    const LightPlacement now = light_placement(scene, icon.light, seconds);
     if (handle == Handle::view)
         return edit("position", now.position + drag_across_view(camera, size, icon.place, from, to));
     if (is_axis(handle))
         return edit("position", now.position + drag_along_axis(camera, size, icon.place, axis_of(handle), from, to));
 
     // The light rotates in place: the tip keeps its offset from the pointer, and a target keeps its distance.
-    const float metres = length * pixel_span(camera, size, icon.place);
+    const float metres = length * pixel_size(camera, size, icon.place);
     const vec2 tip = pixel_of(camera, size, icon.place + metres * now.direction).value_or(from);
     const vec3 direction = drag_direction(camera, size, icon.place, now.direction, metres, tip + (to - from));
     const LightSource& light = scene.lights[icon.light];

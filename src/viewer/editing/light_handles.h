@@ -7,7 +7,7 @@
 #include <optional>
 
 namespace tyndall {
-// Where a light is drawn. A sun without a position is drawn at `sun_place`.
+// Where a light is drawn. A sun without a position is drawn at `sun_position`.
 struct LightIcon {
     size_t light = 0;
     vec3 place{0};
@@ -15,15 +15,15 @@ struct LightIcon {
     float depth = 0; // planar
 };
 std::vector<LightIcon> light_icons(const Camera& camera, ivec2 size, const Scene& scene, double seconds,
-                                   vec3 sun_place = vec3(0));
+                                   vec3 sun_position = vec3(0));
 
 // The light whose icon is nearest to a pixel, at most `reach` pixels away; of two at the same pixel, the one nearer to
 // the camera.
 std::optional<size_t> pick_light(const Camera& camera, ivec2 size, vec2 pixel, const Scene& scene, double seconds,
-                                 float reach = 12, vec3 sun_place = vec3(0));
+                                 float reach = 12, vec3 sun_position = vec3(0));
 
 // Meters per pixel, perpendicular to the view, at the depth of a point.
-float pixel_span(const Camera& camera, ivec2 size, vec3 point);
+float pixel_size(const Camera& camera, ivec2 size, vec3 point);
 
 // What can be dragged: the light itself moves parallel to the image plane, an axis moves it along that world axis, the
 // tip of its direction rotates it.

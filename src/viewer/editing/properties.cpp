@@ -223,7 +223,7 @@ const Property& find_property(const Scene& scene, Part part, size_t index, std::
         if (property->name == name) return *property;
         names.push_back(property->name);
     }
-    fail(ExitCode::usage, place_of(scene, part, index),
+    fail(ExitCode::usage, part_path(scene, part, index),
          names.empty() ? "it belongs to the glTF and cannot be edited here" : unknown_name("property", name, names));
 }
 
@@ -256,7 +256,7 @@ const std::string& name_of(const Scene& scene, Part part, size_t index) {
     return none;
 }
 
-std::string place_of(const Scene& scene, Part part, size_t index) {
+std::string part_path(const Scene& scene, Part part, size_t index) {
     switch (part) {
     case Part::light:
         return "lights/" + name_of(scene, part, index);
@@ -270,7 +270,7 @@ std::string place_of(const Scene& scene, Part part, size_t index) {
     return "scene";
 }
 
-LightPlace light_place(const Scene& scene, size_t light, double seconds) {
+LightPlacement light_placement(const Scene& scene, size_t light, double seconds) {
     const LightSource& source = scene.lights[light];
     if (source.node < 0) {
         const vec3 direction = source.direction.at(seconds);
@@ -293,7 +293,7 @@ float focus_at(const Scene& scene, size_t camera, double seconds) {
 vec3 value_at(const Scene& scene, const Property& property, size_t index, double seconds) {
     const std::string_view name = property.name;
     if (property.part == Part::light && scene.lights[index].node >= 0 && property.is_placement()) {
-        const LightPlace place = light_place(scene, index, seconds);
+        const LightPlacement place = light_placement(scene, index, seconds);
         return name == "position" ? place.position + vec3(scene.origin) : name == "up" ? place.up : place.direction;
     }
     const Slot slot = slot_of(scene, property, index);
@@ -304,7 +304,7 @@ vec3 value_at(const Scene& scene, const Property& property, size_t index, double
     if (const auto* number = std::get_if<float*>(&slot)) value.x = **number;
     if (const auto* vector_value = std::get_if<vec3*>(&slot)) value = **vector_value;
     if (const auto* flag = std::get_if<bool*>(&slot)) value.x = **flag;
-    if (property.is_place() && scene.origin != dvec3(0)) {
+    if (property.is_position() && scene.origin != dvec3(0)) {
         const vec3 origin(scene.origin);
         value += property.kind == ValueKind::number ? vec3(origin.y, 0, 0) : origin;
     }

@@ -24,14 +24,14 @@ struct Property {
     const char* name; // of the scene file's member: "intensity", "background/sky/zenith"
     ValueKind kind;
     const char* unit;              // empty = none
-    float least, most;             // the range of scene files, for each component
+    float min_value, max_value;    // the range of scene files, for each component
     float slider_low, slider_high; // the usual range
     const char* doc;
     Slot (*slot)(Scene& scene, size_t index);
     bool (*applies)(const Scene& scene, size_t index); // whether this light, medium ... has it at present
 
     // Whether it is a position in the world, which a scene stores relative to its origin.
-    bool is_place() const {
+    bool is_position() const {
         const std::string_view member(name);
         return member == "position" || member == "target" || member == "translate" || member == "base" ||
                member.starts_with("bounds/");
@@ -54,13 +54,13 @@ const Property& find_property(const Scene& scene, Part part, size_t index, std::
 
 size_t count_of(const Scene& scene, Part part);
 const std::string& name_of(const Scene& scene, Part part, size_t index); // empty for the scene
-std::string place_of(const Scene& scene, Part part, size_t index);       // "lights/lamp", for messages; "scene"
+std::string part_path(const Scene& scene, Part part, size_t index);      // "lights/lamp", for messages; "scene"
 
 // A light's position relative to the scene's origin, its unit direction and what is up for its profile, gobo or face.
-struct LightPlace {
+struct LightPlacement {
     vec3 position{0}, direction{0, -1, 0}, up{0, 1, 0};
 };
-LightPlace light_place(const Scene& scene, size_t light, double seconds);
+LightPlacement light_placement(const Scene& scene, size_t light, double seconds);
 
 // The value at a time; an unlimited range is infinite.
 vec3 value_at(const Scene& scene, const Property& property, size_t index, double seconds);

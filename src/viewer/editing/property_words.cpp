@@ -111,13 +111,14 @@ const PropertyWords& words_of(const Property& property) {
 SliderRange slider_range(const Property& property, float value) {
     SliderRange range{property.slider_low, property.slider_high, words_of(property).logarithmic};
     if (!std::isfinite(value)) return range;
-    if (value > property.slider_high) range.high = std::min(2 * value, property.most);
-    if (value < property.slider_low) range.low = value < 0 ? std::max(2 * value, property.least) : property.least;
+    if (value > property.slider_high) range.high = std::min(2 * value, property.max_value);
+    if (value < property.slider_low)
+        range.low = value < 0 ? std::max(2 * value, property.min_value) : property.min_value;
     return range;
 }
 
 // Names that are one ordinary word stay as they are.
-std::string in_words(Part part, std::string message) {
+std::string with_labels(Part part, std::string message) {
     for (const Row& row : rows) {
         if (row.part != part || row.name.find('_') == row.name.npos) continue;
         for (size_t at = 0; (at = message.find(row.name, at)) != message.npos;
@@ -127,15 +128,15 @@ std::string in_words(Part part, std::string message) {
     return message;
 }
 
-SunPlace sun_place(vec3 direction) {
+SunAngles sun_angles(vec3 direction) {
     const vec3 to_sun = -glm::normalize(direction);
-    const float bearing = glm::degrees(std::atan2(to_sun.x, to_sun.z));
-    return {glm::degrees(std::asin(std::clamp(to_sun.y, -1.0f, 1.0f))), bearing < 0 ? bearing + 360 : bearing};
+    const float azimuth = glm::degrees(std::atan2(to_sun.x, to_sun.z));
+    return {glm::degrees(std::asin(std::clamp(to_sun.y, -1.0f, 1.0f))), azimuth < 0 ? azimuth + 360 : azimuth};
 }
 
-vec3 direction_from(const SunPlace& place) {
-    const float height = glm::radians(place.height), bearing = glm::radians(place.bearing);
-    return -vec3(std::cos(height) * std::sin(bearing), std::sin(height), std::cos(height) * std::cos(bearing));
+vec3 direction_from(const SunAngles& angles) {
+    const float height = glm::radians(angles.height), azimuth = glm::radians(angles.azimuth);
+    return -vec3(std::cos(height) * std::sin(azimuth), std::sin(height), std::cos(height) * std::cos(azimuth));
 }
 
 const char* kind_name(const MediumSource& medium) {

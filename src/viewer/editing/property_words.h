@@ -20,15 +20,15 @@ const PropertyWords& words_of(const Property& property);
 SliderRange slider_range(const Property& property, float value);
 
 // A message about a part of the scene, with the names of scene files replaced by labels.
-std::string in_words(Part part, std::string message);
+std::string with_labels(Part part, std::string message);
 
 // The position of a sun in the sky, degrees: elevation above the horizon, and azimuth about the vertical from +z
 // towards +x, which is undefined at the zenith.
-struct SunPlace {
-    float height = 0, bearing = 0;
+struct SunAngles {
+    float height = 0, azimuth = 0;
 };
-SunPlace sun_place(vec3 direction);         // direction of travel, of any length
-vec3 direction_from(const SunPlace& place); // of unit length
+SunAngles sun_angles(vec3 direction);         // direction of travel, of any length
+vec3 direction_from(const SunAngles& angles); // of unit length
 
 // The displayed name of a medium's kind: "homogeneous fog".
 const char* kind_name(const MediumSource& medium);

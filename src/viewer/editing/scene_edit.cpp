@@ -7,8 +7,8 @@
 
 namespace tyndall {
 namespace {
-std::string place_of(const Scene& scene, const Edit& edit) {
-    return place_of(scene, edit.part, edit.index) + "/" + edit.property;
+std::string part_path(const Scene& scene, const Edit& edit) {
+    return part_path(scene, edit.part, edit.index) + "/" + edit.property;
 }
 
 template<class T> void set(Keyed<T>& keyed, T value, const Edit& edit, double frame_rate) {
@@ -16,9 +16,9 @@ template<class T> void set(Keyed<T>& keyed, T value, const Edit& edit, double fr
         keyed = value;
         return;
     }
-    const KeyPlace place = key_place(keyed.times, keyed.loop, edit.seconds, frame_rate);
+    const KeyLookup place = find_key(keyed.times, keyed.loop, edit.seconds, frame_rate);
     if (place.seam && keyed.values.back() == keyed.values.front()) keyed.values.back() = value;
-    if (!place.there) {
+    if (!place.exists) {
         keyed.times.insert(keyed.times.begin() + static_cast<std::ptrdiff_t>(place.index), place.time);
         keyed.values.insert(keyed.values.begin() + static_cast<std::ptrdiff_t>(place.index), value);
     }
@@ -41,10 +41,10 @@ void set(Slot slot, const Property& property, const Edit& edit, double frame_rat
 void check_value(const Scene& scene, const Property& property, const Edit& edit) {
     const bool one = property.kind == ValueKind::number || property.kind == ValueKind::toggle;
     for (int i = 0; i < (one ? 1 : 3); ++i)
-        if (!(edit.value[i] >= property.least && edit.value[i] <= property.most))
-            refuse(place_of(scene, edit),
-                   formatted("%.7g is not between %.7g and %.7g", edit.value[i], property.least, property.most));
-    if (!(std::abs(edit.seconds) <= 1e6)) refuse(place_of(scene, edit), "the moment is not within a million seconds");
+        if (!(edit.value[i] >= property.min_value && edit.value[i] <= property.max_value))
+            refuse(part_path(scene, edit), formatted("%.7g is not between %.7g and %.7g", edit.value[i],
+                                                     property.min_value, property.max_value));
+    if (!(std::abs(edit.seconds) <= 1e6)) refuse(part_path(scene, edit), "the moment is not within a million seconds");
 }
 
 // Updates what depends on the value just set.
@@ -52,7 +52,7 @@ void follow(const Scene& scene, LightSource& light, const Edit& edit) {
     if (edit.property == "position" || edit.property == "direction") light.node = -1;
     if (light.target && (edit.property == "position" || edit.property == "target"))
         light.direction =
-            difference(*light.target, light.position, {nullptr, scene.file.string(), place_of(scene, edit)});
+            difference(*light.target, light.position, {nullptr, scene.file.string(), part_path(scene, edit)});
 }
 
 void follow(Background& background, const Edit& edit) {
@@ -76,7 +76,7 @@ void check(const MediumSource& medium, const std::string& place) {
         refuse(place, "the lower corner of the bounds must be less than the upper one");
     for (const float g : medium.g.values)
         if (medium.phase.takes_medium_g() && std::abs(g) > traits_of(medium.phase.kind).max_g)
-            refuse(place, std::string(traits_of(medium.phase.kind).beyond));
+            refuse(place, std::string(traits_of(medium.phase.kind).g_error));
 }
 
 void check(const CameraSource& camera, const std::string& place) {
@@ -110,7 +110,7 @@ void apply_single(Scene& scene, const Edit& edit) {
     const auto checked = [&](auto& thing) {
         all_or_nothing(thing, [&] {
             change(scene, property, edit);
-            check(thing, place_of(scene, edit));
+            check(thing, part_path(scene, edit));
         });
     };
     switch (edit.part) {
@@ -134,10 +134,10 @@ bool is_animated(const Scene& scene, int node) {
 }
 
 // Detaches a light from its node with all of its placement, as a scene file requires.
-std::vector<Edit> off_its_node(const Scene& scene, const Edit& edit) {
+std::vector<Edit> detach_edits(const Scene& scene, const Edit& edit) {
     const LightSource& light = scene.lights[edit.index];
     if (is_animated(scene, light.node))
-        refuse(place_of(scene, edit),
+        refuse(part_path(scene, edit),
                "is animated in the glTF (node \"" + scene.nodes[light.node].name + "\"); change it there");
     std::vector<Edit> edits;
     for (const Property* property : properties_of(scene, Part::light, edit.index)) {
@@ -158,14 +158,14 @@ std::vector<Edit> apply(Scene& scene, const Edit& edit) {
     clean.value += 0.0f; // turns -0 into 0: JSON readers do not keep its sign
     const Property& property = find_property(scene, clean.part, clean.index, clean.property);
     check_value(scene, property, clean);
-    if (property.is_place() && scene.origin != dvec3(0))
-        refuse(place_of(scene, clean),
+    if (property.is_position() && scene.origin != dvec3(0))
+        refuse(part_path(scene, clean),
                "the scene is too far from the world origin to edit positions here; edit the file");
     if (!property.is_placement() || scene.lights[clean.index].node < 0) {
         apply_single(scene, clean);
         return {clean};
     }
-    const std::vector<Edit> edits = off_its_node(scene, clean);
+    const std::vector<Edit> edits = detach_edits(scene, clean);
     LightSource& light = scene.lights[clean.index];
     all_or_nothing(light, [&] {
         for (const Edit& single : edits) apply_single(scene, single);
@@ -173,7 +173,7 @@ std::vector<Edit> apply(Scene& scene, const Edit& edit) {
     return edits;
 }
 
-void apply_again(Scene& scene, const Edit& edit) {
+void reapply(Scene& scene, const Edit& edit) {
     change(scene, find_property(scene, edit.part, edit.index, edit.property), edit);
 }
 }

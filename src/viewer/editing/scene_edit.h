@@ -22,17 +22,17 @@ struct Edit {
 std::vector<Edit> apply(Scene& scene, const Edit& edit);
 
 // Repeats an edit that apply() returned, on the state it was made on, without checks.
-void apply_again(Scene& scene, const Edit& edit);
+void reapply(Scene& scene, const Edit& edit);
 
 // A part of the scene that can be edited.
-struct Thing {
+struct PartRef {
     Part part = Part::light;
     size_t index = 0;
-    bool operator==(const Thing&) const = default;
+    bool operator==(const PartRef&) const = default;
 };
 
 // "lights/lamp", "media/0", "scene". Throws Error (usage).
-Thing parse_thing(const Scene& scene, std::string_view path);
+PartRef parse_part(const Scene& scene, std::string_view path);
 
 // "lights/lamp/intensity", "media/0/g", "exposure" and "400", "0.9 0.8 0.7", "on". Parts are given by name or by index
 // from 0, with a # before an index that is also a name; in names, ~1 stands for a slash and ~0 for ~. One number for a

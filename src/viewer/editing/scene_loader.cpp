@@ -15,8 +15,8 @@ LoadedScene read(const std::filesystem::path& file, const LoadOptions& options) 
         auto session = std::make_shared<SceneSession>(open_session(file, options));
         for (InputTime& input : session->inputs)
             if (input.written >= begun && input.written <= FileClock::now()) input.written = {};
-        auto stage = std::make_shared<Scene>(session->scene);
-        return {file, std::move(session), std::move(stage), {}, ExitCode::ok};
+        auto render_copy = std::make_shared<Scene>(session->scene);
+        return {file, std::move(session), std::move(render_copy), {}, ExitCode::ok};
     } catch (const Error& error) {
         return {file, nullptr, nullptr, error.what(), error.code};
     } catch (const std::bad_alloc&) {

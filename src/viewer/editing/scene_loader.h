@@ -12,7 +12,7 @@ namespace tyndall {
 struct LoadedScene {
     std::filesystem::path file;
     std::shared_ptr<SceneSession> session; // null if reading failed; files written meanwhile count as changed
-    std::shared_ptr<Scene> stage;          // a copy of its scene for the render thread
+    std::shared_ptr<Scene> render_copy;    // a copy of its scene for the render thread
     std::string error;
     ExitCode code = ExitCode::ok;
 };

@@ -13,7 +13,7 @@ bool is_model(const std::filesystem::path& file) {
     return lower_extension(file) == ".gltf" || lower_extension(file) == ".glb";
 }
 
-std::vector<Edit> edits_in_force(const SceneSession& session) {
+std::vector<Edit> active_edits(const SceneSession& session) {
     std::vector<Edit> edits;
     for (size_t i = 0; i < session.done; ++i)
         edits.insert(edits.end(), session.steps[i].edits.begin(), session.steps[i].edits.end());
@@ -24,7 +24,7 @@ std::vector<Edit> edits_in_force(const SceneSession& session) {
 void go_to(SceneSession& session, size_t steps) {
     put_parts(session.before, session.scene);
     session.done = steps;
-    for (const Edit& each : edits_in_force(session)) apply_again(session.scene, each);
+    for (const Edit& each : active_edits(session)) reapply(session.scene, each);
 }
 
 // Reads the file's text and a scene from exactly that text.
@@ -56,7 +56,7 @@ SceneSession read_session(const std::filesystem::path& file, const LoadOptions& 
 }
 
 std::string line_of(const Scene& scene, const Edit& edit) {
-    return formatted("%s/%s = %.9g %.9g %.9g at %.9g s\n", place_of(scene, edit.part, edit.index).c_str(),
+    return formatted("%s/%s = %.9g %.9g %.9g at %.9g s\n", part_path(scene, edit.part, edit.index).c_str(),
                      edit.property.c_str(), edit.value.x, edit.value.y, edit.value.z, edit.seconds);
 }
 
@@ -80,10 +80,10 @@ std::optional<size_t> index_of(const Scene& scene, Part part, const Target& targ
 }
 
 // Repeats a step of another session; adds a line to `lost` for each edit that is not possible.
-void make_again(const Scene& old, const EditStep& step, SceneSession& session, std::vector<std::string>& lost) {
+void reapply_step(const Scene& old, const EditStep& step, SceneSession& session, std::vector<std::string>& lost) {
     EditStep made;
     for (Edit each : step.edits) {
-        const std::string place = place_of(old, each.part, each.index) + "/" + each.property;
+        const std::string place = part_path(old, each.part, each.index) + "/" + each.property;
         const std::optional<size_t> index = index_of(session.scene, each.part, target_of(old, each));
         if (!index) {
             lost.push_back(place + ": no longer exists");
@@ -158,7 +158,7 @@ bool redo(SceneSession& session) {
     return true;
 }
 
-bool take_back(SceneSession& session, uint64_t drag) {
+bool discard_drag(SceneSession& session, uint64_t drag) {
     if (drag == 0 || session.done == 0 || session.steps[session.done - 1].drag != drag) return false;
     undo(session);
     session.steps.resize(session.done);
@@ -177,7 +177,7 @@ std::string unsaved_text(const SceneSession& session) {
         for (const Edit& each : session.steps[i].edits) text += line_of(session.scene, each);
     // The hash covers what the lines do not: which of two parts with the same name, and undone steps.
     if (text.empty()) return text;
-    return text + "scene " + content_hash(edited_text(session.text, session.scene, edits_in_force(session))) + "\n";
+    return text + "scene " + content_hash(edited_text(session.text, session.scene, active_edits(session))) + "\n";
 }
 
 void save(SceneSession& session) {
@@ -185,7 +185,7 @@ void save(SceneSession& session) {
     if (!session.has_file) fail(ExitCode::usage, file.string(), "is not a scene file; give the name of a new one");
     if (read_file(file) != session.on_disk)
         refuse(file.string(), "was changed on disk since it was read; reload it first");
-    std::string text = edited_text(session.text, session.scene, edits_in_force(session));
+    std::string text = edited_text(session.text, session.scene, active_edits(session));
     write_file_atomically(file, std::string_view(text));
     note_saved(session, std::move(text));
 }
@@ -197,8 +197,8 @@ void save_as(SceneSession& session, const std::filesystem::path& file) {
     const auto folder = [](const std::filesystem::path& path) {
         return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
     };
-    std::string base = moved_text(session.text, folder(old), folder(file));
-    std::string text = edited_text(base, session.scene, edits_in_force(session));
+    std::string base = rebase_paths(session.text, folder(old), folder(file));
+    std::string text = edited_text(base, session.scene, active_edits(session));
     std::vector<InputFile> inputs = session.scene.inputs;
     std::erase_if(
         inputs, [&](const InputFile& input) { return input.path == file || (session.has_file && input.path == old); });
@@ -212,14 +212,14 @@ void save_as(SceneSession& session, const std::filesystem::path& file) {
 
 std::vector<std::string> reload(SceneSession& session) {
     session.inputs = input_times(session.scene);
-    return go_on_with(session, open_session(session.scene.file, session.options));
+    return rebase_onto(session, open_session(session.scene.file, session.options));
 }
 
-std::vector<std::string> go_on_with(SceneSession& session, SceneSession fresh) {
+std::vector<std::string> rebase_onto(SceneSession& session, SceneSession fresh) {
     std::vector<std::string> lost;
     const size_t first = std::min(session.kept, session.done);
     if (first < session.saved) lost.push_back("steps undone since the last save are applied again, as in the file");
-    for (size_t i = first; i < session.done; ++i) make_again(session.scene, session.steps[i], fresh, lost);
+    for (size_t i = first; i < session.done; ++i) reapply_step(session.scene, session.steps[i], fresh, lost);
     session = std::move(fresh);
     return lost;
 }

@@ -37,7 +37,7 @@ bool undo(SceneSession& session); // false if there is nothing to undo
 bool redo(SceneSession& session);
 
 // Cancels a drag: its step is undone and cannot be redone. False if the last step is not that drag's.
-bool take_back(SceneSession& session, uint64_t drag);
+bool discard_drag(SceneSession& session, uint64_t drag);
 
 bool has_unsaved_changes(const SceneSession& session);
 
@@ -54,7 +54,7 @@ void save_as(SceneSession& session, const std::filesystem::path& file);
 std::vector<std::string> reload(SceneSession& session);
 
 // The same with a session that was read in the background; for interfaces that do not wait for files.
-std::vector<std::string> go_on_with(SceneSession& session, SceneSession fresh);
+std::vector<std::string> rebase_onto(SceneSession& session, SceneSession fresh);
 
 // The unsaved edits, one per line, and a hash of the edited scene; empty if there are none. One more line if something
 // saved was undone.

@@ -60,9 +60,9 @@ void write_key(std::string& text, const std::string& pointer, const Property& pr
     const std::vector<Json>& keys = keyed.find("keys")->items;
     std::vector<float> times;
     for (const Json& key : keys) times.push_back(static_cast<float>(key.items[0].number));
-    const KeyPlace place = key_place(times, keyed.boolean_or("loop", false), edit.seconds, frame_rate);
+    const KeyLookup place = find_key(times, keyed.boolean_or("loop", false), edit.seconds, frame_rate);
     const std::string list = pointer + "/keys";
-    if (!place.there) {
+    if (!place.exists) {
         const std::string key = "[" + json_number(place.time) + ", " + value_text(property, edit.value) + "]";
         text = with_json_item(text, list, place.index, key);
         return;
@@ -182,7 +182,7 @@ std::string new_scene_text(Scene& scene) {
     return text + "\n}\n";
 }
 
-std::string moved_text(std::string text, const std::filesystem::path& from, const std::filesystem::path& to) {
+std::string rebase_paths(std::string text, const std::filesystem::path& from, const std::filesystem::path& to) {
     std::error_code error; // folders that are missing or unreadable count as different
     if (std::filesystem::equivalent(from, to, error)) return text;
     for (const auto& [pointer, path] : files_in(parse_json(text, "scene"), "")) {

@@ -15,5 +15,5 @@ std::string edited_text(std::string text, const Scene& scene, std::span<const Ed
 std::string new_scene_text(Scene& scene);
 
 // The text with its relative paths changed to refer to the same files from another folder.
-std::string moved_text(std::string text, const std::filesystem::path& from, const std::filesystem::path& to);
+std::string rebase_paths(std::string text, const std::filesystem::path& from, const std::filesystem::path& to);
 }

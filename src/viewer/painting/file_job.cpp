@@ -31,16 +31,16 @@ std::string add_camera(Scene& scene, const Viewpoint& view) {
     source.vertical_fov = {camera.vertical_fov}, source.ortho_height = camera.ortho_height;
     source.near = camera.near, source.far = camera.far;
     source.aperture = {camera.lens.radius}, source.focus = {camera.lens.focus};
-    source.blades = camera.lens.blades, source.blade_turn = {camera.lens.turn};
+    source.blades = camera.lens.blades, source.blade_rotation = {camera.lens.rotation};
     scene.cameras.push_back(source);
     return source.name;
 }
 
 std::string frames_done(int done, int of) { return formatted("%d of %s", done, count_text(of, "frame").c_str()); }
 
-JobResult render(const RenderFiles& files, Progress& progress, std::atomic<bool>& cancel) {
+JobResult render(const RenderJob& files, Progress& progress, std::atomic<bool>& cancel) {
     const RenderRequest& request = files.request;
-    const RenderReport report = render_sequence(*files.scene, request, plan_as_asked(request), progress, cancel);
+    const RenderReport report = render_sequence(*files.scene, request, requested_plan(request), progress, cancel);
     const int done = static_cast<int>(report.frames.size()), all = static_cast<int>(request.frames.size());
     if (report.cancelled) return {"stopped: " + frames_done(done, all) + " are finished: " + request.output};
     progress.finish();
@@ -54,7 +54,7 @@ JobResult render(const RenderFiles& files, Progress& progress, std::atomic<bool>
             ExitCode::non_finite};
 }
 
-JobResult bake_fog(const BakeFiles& files, Progress& progress, std::atomic<bool>& cancel) {
+JobResult bake_fog(const BakeJob& files, Progress& progress, std::atomic<bool>& cancel) {
     BakeOptions options;
     options.resume = true, options.cancel = &cancel;
     const BakeReport report = bake(files.recipe, files.output, files.frames, options, progress);
@@ -88,9 +88,9 @@ RenderRequest sequence_request(const ViewState& state, const std::string& output
     return request;
 }
 
-RenderFiles render_files(const ViewState& state, RenderRequest request) {
+RenderJob render_job(const ViewState& state, RenderRequest request) {
     auto scene = std::make_shared<Scene>(loaded_scene(state));
-    if (state.free) request.camera = add_camera(*scene, state.view);
+    if (state.free_camera) request.camera = add_camera(*scene, state.view);
     return {std::move(scene), std::move(request)};
 }
 
@@ -101,14 +101,14 @@ std::vector<std::string> bakeable_media(const Scene& scene) {
     return names;
 }
 
-BakeFiles bake_files(const ViewState& state, const std::string& medium, const std::string& output,
-                     const std::string& range) {
+BakeJob bake_job(const ViewState& state, const std::string& medium, const std::string& output,
+                 const std::string& range) {
     const Scene& scene = loaded_scene(state);
     const auto found =
         std::ranges::find_if(scene.media, [&](const MediumSource& one) { return one.recipe && one.name == medium; });
     if (found == scene.media.end())
         fail(ExitCode::usage, "bake", unknown_name("medium made from a recipe", medium, bakeable_media(scene)));
-    BakeFiles files{*found->recipe, output, frames_of(scene, range)};
+    BakeJob files{*found->recipe, output, frames_of(scene, range)};
     check_pattern(output, ".vdb", files.frames.size() > 1, "bake");
     if (found->voxel_size > 0) files.recipe.voxel_size = found->voxel_size;
     files.recipe.frame_rate = scene.frame_rate;
@@ -123,7 +123,7 @@ std::string command_of(const ViewState& state, RenderRequest request) {
     const Scene& scene = loaded_scene(state);
     if (!request.unsaved.empty() || (!state.session->has_file && is_volume_name(scene.file)))
         fail(ExitCode::usage, "copy-command", "what is shown is not in a scene file: save the scene first");
-    if (state.free)
+    if (state.free_camera)
         fail(ExitCode::usage, "copy-command",
              "the camera moved by hand is not in a scene file: copy it into the scene, or go back to one of the "
              "scene's (home)");
@@ -133,24 +133,24 @@ std::string command_of(const ViewState& state, RenderRequest request) {
 }
 
 std::string name_of(const FileJob& job) {
-    if (const auto* files = std::get_if<RenderFiles>(&job)) return "render " + files->request.output;
-    return "bake " + std::get<BakeFiles>(job).output;
+    if (const auto* files = std::get_if<RenderJob>(&job)) return "render " + files->request.output;
+    return "bake " + std::get<BakeJob>(job).output;
 }
 
 int frame_count(const FileJob& job) {
-    const auto* files = std::get_if<RenderFiles>(&job);
-    return static_cast<int>(files ? files->request.frames.size() : std::get<BakeFiles>(job).frames.size());
+    const auto* files = std::get_if<RenderJob>(&job);
+    return static_cast<int>(files ? files->request.frames.size() : std::get<BakeJob>(job).frames.size());
 }
 
 JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& cancel) {
-    const auto* files = std::get_if<RenderFiles>(&job);
+    const auto* files = std::get_if<RenderJob>(&job);
     try {
-        OutputPlaces places;
+        OutputPaths places;
         if (files) {
             places.check(files->request.output, files->request.frames, "render");
             return render(*files, progress, cancel);
         }
-        const BakeFiles& fog = std::get<BakeFiles>(job);
+        const BakeJob& fog = std::get<BakeJob>(job);
         places.check(fog.output, fog.frames, "bake");
         return bake_fog(fog, progress, cancel);
     } catch (const Error& error) {
@@ -162,11 +162,11 @@ JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& can
     }
 }
 
-std::string usual_sequence_name(const ViewState& state) {
+std::string default_sequence_name(const ViewState& state) {
     return loaded_scene(state).file.stem().string() + "." + state.mode + ".####.exr";
 }
 
-std::string usual_bake_name(const std::string& medium) {
+std::string default_bake_name(const std::string& medium) {
     std::string name = medium;
     std::ranges::replace_if(
         name, [](unsigned char letter) { return !std::isalnum(letter) && letter != '-'; }, '_');

@@ -9,18 +9,18 @@
 #include <variant>
 
 namespace tyndall {
-struct RenderFiles {
+struct RenderJob {
     std::shared_ptr<const Scene> scene; // a copy for this request, with the edits at the time of asking
     RenderRequest request;
 };
 
-struct BakeFiles {
+struct BakeJob {
     FogRecipe recipe;
     std::string output; // pattern
     std::vector<int> frames;
 };
 
-using FileJob = std::variant<RenderFiles, BakeFiles>;
+using FileJob = std::variant<RenderJob, BakeJob>;
 
 // The request that renders the frames of a range (empty: the scene's) as the state shows them; files that exist and are
 // up to date are kept. Throws Error (usage: no scene is loaded, or the range or pattern is wrong).
@@ -28,12 +28,12 @@ RenderRequest sequence_request(const ViewState& state, const std::string& output
                                const std::string& isa);
 
 // The job of a request, with a copy of the scene to which a camera moved by hand is added.
-RenderFiles render_files(const ViewState& state, RenderRequest request);
+RenderJob render_job(const ViewState& state, RenderRequest request);
 
 // The job that bakes a medium made from a recipe, with its edits; the optics in the files' metadata are those of the
 // first frame. Throws Error (usage).
-BakeFiles bake_files(const ViewState& state, const std::string& medium, const std::string& output,
-                     const std::string& range);
+BakeJob bake_job(const ViewState& state, const std::string& medium, const std::string& output,
+                 const std::string& range);
 
 // Names of the media that can be baked.
 std::vector<std::string> bakeable_media(const Scene& scene);
@@ -55,6 +55,6 @@ int frame_count(const FileJob& job);
 JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& cancel);
 
 // Default names of outputs: scene.march.####.exr, fog.####.vdb.
-std::string usual_sequence_name(const ViewState& state);
-std::string usual_bake_name(const std::string& medium);
+std::string default_sequence_name(const ViewState& state);
+std::string default_bake_name(const std::string& medium);
 }

@@ -8,7 +8,7 @@
 #include <utility>
 
 namespace tyndall {
-uint64_t usual_store_bytes() { return machine_memory() / 4; }
+uint64_t usual_store_bytes() { return physical_memory() / 4; }
 
 FrameStore::FrameStore(uint64_t max_bytes) : max_bytes_(max_bytes) {}
 FrameStore::~FrameStore() = default;
@@ -21,36 +21,36 @@ void FrameStore::begin(const std::shared_ptr<const Scene>& scene, MissingFrame m
     scene_ = scene, missing_ = missing;
 }
 
-void FrameStore::clear() { frames_.clear(), ahead_.reset(); }
+void FrameStore::clear() { frames_.clear(), prefetched_.reset(); }
 
 void FrameStore::put(const Snapshot& snapshot) {
     if (!snapshot.cache || snapshot.scene != scene_.get()) return;
-    if (frames_.empty()) bytes_before_ = held_memory(); // which includes everything that snapshots refer to
+    if (frames_.empty()) bytes_before_ = resident_memory(); // which includes everything that snapshots refer to
     const bool is_there = frames_.contains(snapshot.frame);
-    if (!is_there && held_memory() >= bytes_before_ + max_bytes_) return;
+    if (!is_there && resident_memory() >= bytes_before_ + max_bytes_) return;
     Snapshot& stored = frames_[snapshot.frame];
     stored = snapshot;
-    stored.cache_before = nullptr;
+    stored.previous_cache = nullptr;
 }
 
 std::optional<Snapshot> FrameStore::take(int frame, double& seconds) {
     std::optional<Snapshot> found;
     if (const auto stored = frames_.find(frame); stored != frames_.end()) {
         found = stored->second;
-        found->cache_before = std::exchange(found->cache, std::make_shared<FrameCache>());
-    } else if (ahead_ && ahead_->frame == frame) {
-        found = std::exchange(ahead_, std::nullopt);
+        found->previous_cache = std::exchange(found->cache, std::make_shared<FrameCache>());
+    } else if (prefetched_ && prefetched_->frame == frame) {
+        found = std::exchange(prefetched_, std::nullopt);
         seconds += ahead_seconds_;
     }
     return found;
 }
 
-bool FrameStore::make_ahead(int frame, const Snapshot& current) {
-    if (!scene_ || frames_.contains(frame) || (ahead_ && ahead_->frame == frame)) return false;
-    ahead_.reset();
+bool FrameStore::prefetch(int frame, const Snapshot& current) {
+    if (!scene_ || frames_.contains(frame) || (prefetched_ && prefetched_->frame == frame)) return false;
+    prefetched_.reset();
     const double start = steady_seconds();
     try {
-        ahead_ = make_snapshot(*scene_, moment_of(*scene_, frame), &current, missing_);
+        prefetched_ = make_snapshot(*scene_, moment_of(*scene_, frame), &current, missing_);
     } catch (const Error&) {
         return false;
     }

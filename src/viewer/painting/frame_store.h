@@ -31,7 +31,7 @@ public:
 
     // Prefetches a frame, sharing data with `current`; false if it exists already or fails. Errors are reported when
     // the frame is requested.
-    bool make_ahead(int frame, const Snapshot& current);
+    bool prefetch(int frame, const Snapshot& current);
 
     size_t size() const;
 
@@ -39,7 +39,7 @@ private:
     std::shared_ptr<const Scene> scene_;
     MissingFrame missing_ = MissingFrame::error;
     std::map<int, Snapshot> frames_;
-    std::optional<Snapshot> ahead_;
+    std::optional<Snapshot> prefetched_;
     double ahead_seconds_ = 0;
     uint64_t max_bytes_ = 0, bytes_before_ = 0; // resident memory before the first frame
 };

@@ -7,18 +7,18 @@ namespace {
 constexpr double late = 1.15;      // times the wanted time
 constexpr double in_time = 0.85;   // times the wanted time, for the predicted time of a larger image
 constexpr double min_share = 0.25; // fraction of the wanted time that pixels always get
-constexpr int pictures_to_bar = 60;
+constexpr int retry_after = 60;
 
 double area(int level) {
-    const double share = pace_shares[static_cast<size_t>(level)];
-    return share * share;
+    const double scale = pace_scales[static_cast<size_t>(level)];
+    return scale * scale;
 }
 }
 
-void measured(Pace& pace, double seconds, double fixed) {
-    const int last = static_cast<int>(pace_shares.size()) - 1, level = pace.level;
+void update_pace(Pace& pace, double seconds, double fixed) {
+    const int last = static_cast<int>(pace_scales.size()) - 1, level = pace.level;
     const double pixels = std::max(seconds - fixed, 0.0);
-    if (pace.pictures_barred > 0) --pace.pictures_barred;
+    if (pace.retry_in > 0) --pace.retry_in;
 
     // Drop to a level that fits; do not retry the one that was too slow for a while.
     if (seconds > late * pace.wanted && level < last) {
@@ -26,11 +26,11 @@ void measured(Pace& pace, double seconds, double fixed) {
         int lower = level;
         while (lower < last && pixels * area(lower) / area(level) > time) ++lower;
         if (lower != level) {
-            pace.level = lower, pace.barred = level, pace.pictures_barred = pictures_to_bar;
+            pace.level = lower, pace.slow_level = level, pace.retry_in = retry_after;
             return;
         }
     }
-    if (level == 0 || (pace.pictures_barred > 0 && level - 1 <= pace.barred)) return;
+    if (level == 0 || (pace.retry_in > 0 && level - 1 <= pace.slow_level)) return;
     const double time = std::max(in_time * pace.wanted - fixed, in_time * min_share * pace.wanted);
     if (pixels * area(level - 1) / area(level) < time) --pace.level;
 }

@@ -24,7 +24,7 @@ void load(Painter& painter, const Request& request) {
     const bool same_scene = painter.scene == request.scene, same_edits = painter.edited == request.edited;
     const bool same_files = painter.request.missing == request.missing;
     if (same_scene && same_edits && same_files && painter.snapshot.frame == request.frame && painter.snapshot.cache) {
-        painter.snapshot.cache_before = std::exchange(painter.snapshot.cache, std::make_shared<FrameCache>());
+        painter.snapshot.previous_cache = std::exchange(painter.snapshot.cache, std::make_shared<FrameCache>());
         painter.snapshot.notes.clear();
     } else {
         if (!same_scene) painter.history = {};
@@ -49,16 +49,16 @@ void note_times(Painter& painter, const FrameStats& stats) {
 }
 
 // One sample per pixel of the quick mode.
-Layers render_quick(Painter& painter, const Request& request, float share, std::atomic<bool>& cancel) {
+Layers render_quick(Painter& painter, const Request& request, float scale, std::atomic<bool>& cancel) {
     View view = view_of(request);
-    view.size = glm::min(glm::max(ivec2(glm::round(vec2(view.size) * share)), ivec2(8)), view.size);
+    view.size = glm::min(glm::max(ivec2(glm::round(vec2(view.size) * scale)), ivec2(8)), view.size);
     view.pixel_samples = view.lamp_samples = view.edge_samples = 1;
     view.frame = painter.ticks++;
     const Mode& mode = find_mode(quick_mode(request));
     FrameStats stats;
     FrameOptions options;
     options.cancel = &cancel;
-    if (mode.remembers) options.history = &painter.history;
+    if (mode.uses_history) options.history = &painter.history;
     Layers layers = render_frame(mode, view, painter.snapshot, request.settings, options, stats);
     note_times(painter, stats);
     painter.picture.mode = mode.name, painter.picture.samples = 1, painter.picture.non_finite = stats.non_finite;
@@ -68,12 +68,12 @@ Layers render_quick(Painter& painter, const Request& request, float share, std::
 ShownPicture paint_quick(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
     Pace& pace = painter.paces[quick_mode(request)];
     pace.wanted = request.wanted_seconds;
-    painter.rounds[0].layers = render_quick(painter, request, pace.share(), cancel);
+    painter.rounds[0].layers = render_quick(painter, request, pace.scale(), cancel);
     painter.quick = true, painter.stood_in = pace.level == 0;
     painter.picture.quick = true;
     ShownPicture picture = shown(painter, request);
     const StageTimes& times = picture.times;
-    measured(pace, times.total(), times.load + times.prepare);
+    update_pace(pace, times.total(), times.load + times.prepare);
     return picture;
 }
 
@@ -148,7 +148,7 @@ void begin(Painter& painter, const Request& request) {
 std::optional<ShownPicture> next_picture(Painter& painter, const Request& request, std::atomic<bool>& cancel) {
     const bool same = painter.begun && painter.request.revision == request.revision;
     const bool shown_anew = same && painter.request.shown_revision != request.shown_revision;
-    stage(request);
+    apply_edits(request);
     if (!same) begin(painter, request);
     painter.request = request;
     // Until this image has started, the layers belong to another one.
@@ -156,7 +156,7 @@ std::optional<ShownPicture> next_picture(Painter& painter, const Request& reques
     if (request.moving) {
         // A still image that has started is better than a quick one.
         if (!painter.quick && painter.rounds[0].rounds == 0) return paint_quick(painter, request, cancel);
-        if (request.next_frame) painter.store.make_ahead(*request.next_frame, painter.snapshot);
+        if (request.next_frame) painter.store.prefetch(*request.next_frame, painter.snapshot);
         return {};
     }
     if (painter.rounds[0].rounds == 0 && !painter.stood_in && quick_mode(request) != request.mode)

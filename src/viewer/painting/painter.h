@@ -24,7 +24,7 @@ struct Painter {
     History history;  // of quick images
     std::map<std::string, Pace> paces;
     std::optional<double> exposure; // measured for ...
-    int measures = -1;              // ... this Request::measures and the scene `measured`
+    int metering_id = -1;           // ... this Request::metering_id and the scene `measured`
     std::weak_ptr<const Scene> measured;
     int ticks = 0; // quick images and stand-ins so far
     bool begun = false;

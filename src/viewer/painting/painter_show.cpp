@@ -30,13 +30,13 @@ const ReferencePicture* shown_reference(const Painter& painter, const Request& r
 Image<glm::u8vec4> codes_of(const Rounds& rounds, const ReferencePicture* reference, const Request& request,
                             std::optional<ErrorFigures>& errors) {
     errors.reset();
-    if (request.shown.layer != ShownLayer::error || !reference) return toned(rounds.layers, request.shown);
+    if (request.shown.layer != ShownLayer::error || !reference) return tone_map(rounds.layers, request.shown);
     errors = error_figures(rounds, *reference);
     return error_codes(rounds.layers, layers_of(*reference));
 }
 
 // Combines two images into one: the right one from the wipe on, or both in full side by side.
-void put_beside(const Image<glm::u8vec4>& right, const Shown& shown, Image<glm::u8vec4>& codes) {
+void put_beside(const Image<glm::u8vec4>& right, const DisplayOptions& shown, Image<glm::u8vec4>& codes) {
     const ivec2 size = codes.size;
     const int shift = shown.side_by_side ? size.x : 0;
     int split = static_cast<int>(std::round(std::clamp(shown.wipe, 0.0f, 1.0f) * static_cast<float>(size.x)));
@@ -72,11 +72,11 @@ std::shared_ptr<const PixelValues> values_of(const Layers& layers) {
 // The request with an exposure: the one already measured, or measured here.
 Request exposed(Painter& painter, Request request) {
     if (request.shown.exposure) return request;
-    if (painter.measures != request.measures || painter.measured.lock() != request.scene) {
+    if (painter.metering_id != request.metering_id || painter.measured.lock() != request.scene) {
         const int orders = orders_of(find_mode(request.mode), request.settings);
         painter.exposure =
             automatic_exposure(*request.scene, render_request(request), orders, &painter.snapshot, &request.camera);
-        painter.measures = request.measures, painter.measured = request.scene;
+        painter.metering_id = request.metering_id, painter.measured = request.scene;
     }
     request.shown.exposure = painter.exposure;
     return request;
@@ -86,7 +86,7 @@ ShownPicture shown(Painter& painter, const Request& asked) {
     const double start = steady_seconds();
     const Request request = exposed(painter, asked);
     ShownPicture picture = painter.picture;
-    picture.exposure = *request.shown.exposure, picture.measures = request.measures;
+    picture.exposure = *request.shown.exposure, picture.metering_id = request.metering_id;
     picture.measured.reset();
     if (!asked.shown.exposure) picture.measured = picture.exposure;
     if (request.explain) picture.ray = painter.ray;
@@ -101,7 +101,7 @@ ShownPicture shown(Painter& painter, const Request& asked) {
     if (!request.beside.empty()) {
         Image<glm::u8vec4> right;
         if (!picture.quick && !mode_beside(request) && reference)
-            right = toned(layers_of(*reference), request.shown), picture.beside = reference_name,
+            right = tone_map(layers_of(*reference), request.shown), picture.beside = reference_name,
             picture.values_beside = values_of(layers_of(*reference));
         else if (!picture.quick && painter.rounds[1].rounds > 0)
             right = codes_of(painter.rounds[1], reference, request, picture.errors_beside),

@@ -29,7 +29,7 @@ std::shared_ptr<const RayAnswer> answer_ray(const Request& request, const Snapsh
     answer->complete = is_of(request, before);
     if (answer->complete)
         for (const Mode& mode : modes()) options.modes.push_back(&mode);
-    answer->story = explain_ray(view_of(request), snapshot, request.settings, answer->pixel, options);
+    answer->report = explain_ray(view_of(request), snapshot, request.settings, answer->pixel, options);
     answer->seconds = steady_seconds() - start;
     return answer;
 }

@@ -12,7 +12,7 @@ struct RayAnswer {
     uint64_t revision = 0; // of the image it refers to
     ivec2 pixel{0};
     int frame = 1;
-    RayStory story;
+    RayReport report;
     bool complete = false; // includes the answers of the modes
     double seconds = 0;
 };

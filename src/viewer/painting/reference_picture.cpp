@@ -19,7 +19,7 @@ std::string bits_of(const Camera& camera) {
     CacheKey key;
     key.add(camera.position).add(camera.right).add(camera.up).add(camera.forward);
     key.add(camera.vertical_fov).add(camera.ortho_height).add(camera.near).add(camera.far);
-    if (const Lens& lens = camera.lens) key.add(lens.radius).add(lens.focus).add(lens.blades).add(lens.turn);
+    if (const Lens& lens = camera.lens) key.add(lens.radius).add(lens.focus).add(lens.blades).add(lens.rotation);
     return key.bits;
 }
 
@@ -84,22 +84,22 @@ bool is_finished(const ReferencePicture& reference, const Request& request) {
 }
 
 namespace {
-void add_difference(const Image<vec3>& exact, const Image<vec3>& look, Image<vec3>& image) {
-    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += exact.pixels[i] - look.pixels[i];
+void add_difference(const Image<vec3>& exact, const Image<vec3>& coarse, Image<vec3>& image) {
+    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += exact.pixels[i] - coarse.pixels[i];
 }
 
 void make_exact(ReferencePicture& reference, const Request& request, const Snapshot& snapshot,
                 std::atomic<bool>& cancel) {
     Rounds one;
     const Layers exact =
-        render_round(one, main_mode(), request, truth_of(request.settings), snapshot, 1, cancel).layers;
-    const ColorLayers& look = reference.look;
+        render_round(one, main_mode(), request, truth_settings(request.settings), snapshot, 1, cancel).layers;
+    const ColorLayers& coarse = reference.coarse;
     Layers result = reference.rounds.layers;
-    add_difference(exact.color, look.color, result.color);
-    add_difference(exact.inscatter, look.inscatter, result.inscatter);
+    add_difference(exact.color, coarse.color, result.color);
+    add_difference(exact.inscatter, coarse.inscatter, result.inscatter);
     const auto share = [](const Errors& errors) { return relative(errors.rmse, errors.mean_reference); };
-    reference.change = std::max(share(measure_errors(look.color, exact.color)),
-                                share(measure_errors(look.inscatter, exact.inscatter)));
+    reference.change = std::max(share(measure_errors(coarse.color, exact.color)),
+                                share(measure_errors(coarse.inscatter, exact.inscatter)));
     reference.exact = std::move(result);
 }
 }
@@ -110,7 +110,7 @@ void paint_reference(ReferencePicture& reference, const Request& request, const 
     if (rounds.samples >= request.max_samples) return make_exact(reference, request, snapshot, cancel);
     const int samples = round_samples(rounds, request, &like);
     Round round = render_round(rounds, main_mode(), request, reference.settings, snapshot, samples, cancel);
-    if (rounds.rounds == 0) reference.look = {round.layers.color, round.layers.inscatter};
+    if (rounds.rounds == 0) reference.coarse = {round.layers.color, round.layers.inscatter};
     add_round(std::move(round), request, rounds);
 }
 

@@ -22,9 +22,9 @@ struct ReferencePicture {
     std::string key;   // of all it depends on
     Settings settings; // of quality final
     Rounds rounds;
-    ColorLayers look;  // one sample at pixel centers
-    Layers exact;      // the final result
-    double change = 0; // caused by the exact march, relative to the mean
+    ColorLayers coarse; // one sample at pixel centers
+    Layers exact;       // the final result
+    double change = 0;  // caused by the exact march, relative to the mean
 };
 
 // The image's settings for light and pixels, with the march's settings of quality final.

@@ -56,10 +56,10 @@ std::shared_ptr<const ShownPicture> RenderThread::take_picture() {
     return std::exchange(picture_, nullptr);
 }
 
-std::optional<Saved> RenderThread::take_saved() {
+std::optional<SaveResult> RenderThread::take_saved() {
     const std::scoped_lock lock(mutex_);
     if (saved_.empty()) return {};
-    Saved saved = std::move(saved_.front());
+    SaveResult saved = std::move(saved_.front());
     saved_.pop_front();
     return saved;
 }
@@ -78,7 +78,7 @@ PictureCounts RenderThread::counts() const {
 
 void RenderThread::make_file(SaveJob job) {
     const double start = steady_seconds();
-    Saved saved{job.file, 0, {}, ExitCode::ok};
+    SaveResult saved{job.file, 0, {}, ExitCode::ok};
     saving_ = 0;
     try {
         const bool same = painter_->scene == job.request.scene;

@@ -36,7 +36,7 @@ public:
 
     // The newest image that was not taken yet; null if there is none.
     std::shared_ptr<const ShownPicture> take_picture();
-    std::optional<Saved> take_saved();
+    std::optional<SaveResult> take_saved();
 
     bool idle() const;     // nothing is in progress or pending, and the image was taken
     double saving() const; // progress of the file being written, 0 to 1; negative: none
@@ -52,7 +52,7 @@ private:
     std::optional<Request> pending_;
     std::deque<SaveJob> saves_;
     std::shared_ptr<const ShownPicture> picture_;
-    std::deque<Saved> saved_;
+    std::deque<SaveResult> saved_;
     PictureCounts counts_;
     bool stop_ = false, unfinished_ = false, working_ = false, painting_quick_ = false;
     std::atomic<bool> cancel_{false}, cancel_save_{false};

@@ -28,7 +28,7 @@ View view_of(const Request& request) {
     return view;
 }
 
-void stage(const Request& request) {
+void apply_edits(const Request& request) {
     if (request.edited) put_parts(*request.edited, *request.scene);
 }
 }

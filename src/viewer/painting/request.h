@@ -16,13 +16,13 @@ struct View;
 
 // How a medium's density is shown.
 enum class VolumeLook { slice, maximum, mean };
-struct VolumeQuestion {
+struct VolumeRequest {
     std::string medium; // empty = the first
     VolumeLook look = VolumeLook::slice;
     int axis = 2;          // of the slice's normal, or of the projection
     float position = 0.5f; // of a slice, as a fraction of the medium's extent
 
-    bool operator==(const VolumeQuestion&) const = default;
+    bool operator==(const VolumeRequest&) const = default;
 };
 
 struct Request {
@@ -41,10 +41,10 @@ struct Request {
     Settings settings;
     uint32_t seed = 0;
     MissingFrame missing = MissingFrame::error;
-    Shown shown;
-    int measures = 0;             // changes when automatic exposure has to be measured again
+    DisplayOptions shown;
+    int metering_id = 0;          // changes when automatic exposure has to be measured again
     std::optional<ivec2> explain; // a pixel whose ray is to be explained
-    std::optional<VolumeQuestion> volume;
+    std::optional<VolumeRequest> volume;
     int max_samples = 64;             // per pixel, after which an image is finished
     double wanted_seconds = 1.0 / 30; // per quick image
 };
@@ -57,5 +57,5 @@ RenderRequest render_request(const Request& request);
 View view_of(const Request& request);
 
 // Copies the request's edits into its scene; call before reading from the scene.
-void stage(const Request& request);
+void apply_edits(const Request& request);
 }

@@ -31,7 +31,7 @@ void add_to_half(const Layers& layers, int samples, ColorLayers& half, int& half
 // Reuses a mode's preparation for all rounds, unless it contributes to the image's noise.
 void prepare(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings, Rounds& rounds,
              FrameOptions& options, FrameStats& stats) {
-    if (mode.remembers) return;
+    if (mode.uses_history) return;
     if (!rounds.prepared) {
         const double start = steady_seconds();
         rounds.prepared = std::make_shared<const Prepared>(prepare_frame(mode, view, snapshot, settings, nullptr));

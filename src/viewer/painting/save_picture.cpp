@@ -24,8 +24,8 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     render.quality = job.quality, render.isa = job.isa, render.light_units = job.light_units;
     render.unsaved = job.unsaved;
     render.png = kind == ".png";
-    const RenderPlan plan = plan_as_asked(render);
-    stage(request);
+    const RenderPlan plan = requested_plan(render);
+    apply_edits(request);
     if (!job.inputs.empty()) request.scene->inputs = job.inputs;
     const View view = view_of(request);
     check_job(*request.scene, render, *plan.mode);

@@ -24,7 +24,7 @@ struct SaveJob {
     std::string unsaved;           // edits that the scene's files do not have; noted in the header
 };
 
-struct Saved {
+struct SaveResult {
     std::filesystem::path file;
     double seconds = 0;
     std::string error; // empty = written

@@ -58,7 +58,7 @@ struct ShownPicture {
     std::string mode;               // that rendered it, perhaps the stand-in
     std::string beside;             // that rendered its right part; empty = one mode throughout
     double exposure = 0;            // stops, of image and fog
-    int measures = 0;               // the request's,
+    int metering_id = 0;            // the request's,
     std::optional<double> measured; // and the exposure, if measured for it
     bool quick = false;             // made while things moved
     bool finished = false;          // will not be refined further

@@ -49,7 +49,7 @@ glm::u8vec3 color_of_stop(int stop) {
     return heat_color((std::clamp(stop, lowest_stop, highest_stop - 1) - lowest_stop + 0.5) / stops);
 }
 
-Image<glm::u8vec4> toned(const Layers& layers, const Shown& shown) {
+Image<glm::u8vec4> tone_map(const Layers& layers, const DisplayOptions& shown) {
     const Display display = shown.display();
     const float gain = static_cast<float>(std::exp2(display.exposure));
     switch (shown.layer) {

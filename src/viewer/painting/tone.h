@@ -12,7 +12,7 @@ struct Layers;
 enum class ShownLayer { picture, fog, transmittance, depth, validity, stops, error };
 const std::vector<std::string>& shown_layer_names();
 
-struct Shown {
+struct DisplayOptions {
     ShownLayer layer = ShownLayer::picture;
     std::optional<double> exposure; // stops; of picture and fog; none = measured
     ViewTransform transform = ViewTransform::filmic;
@@ -30,5 +30,5 @@ glm::u8vec3 color_of_stop(int stop);
 // Depth is brighter the nearer, and black without a surface. Validity is the picture in gray, redder where validity is
 // lower. Stops are false colors of the picture's luminance. Error shows the picture: errors need a reference. Alpha is
 // 255.
-Image<glm::u8vec4> toned(const Layers& layers, const Shown& shown);
+Image<glm::u8vec4> tone_map(const Layers& layers, const DisplayOptions& shown);
 }

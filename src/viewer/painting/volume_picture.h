@@ -7,7 +7,7 @@ struct Snapshot;
 
 struct VolumePicture {
     uint64_t revision = 0; // of its request
-    VolumeQuestion question;
+    VolumeRequest question;
     int frame = 1;
     bool quick = false;                                     // made while things moved: files were not read
     std::string medium;                                     // that is shown; empty = the scene has none at this time

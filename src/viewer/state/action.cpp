@@ -111,10 +111,10 @@ Line split(std::string_view text) {
 // The limit for angles, pixels, frames and seconds alike.
 constexpr double largest_number = 1e9;
 
-double number(std::string_view text, const std::string& place, std::string_view usage) {
+double number(std::string_view text, const std::string& location, std::string_view usage) {
     const auto value = parsed<double>(text);
     if (!value || !(std::abs(*value) <= largest_number))
-        refuse(place, "'" + printable(text, 40) + "' is not a number; expected " + std::string(usage));
+        refuse(location, "'" + printable(text, 40) + "' is not a number; expected " + std::string(usage));
     return *value;
 }
 
@@ -123,21 +123,21 @@ bool is_name(std::string_view parameter) { return parameter[0] >= 'A' && paramet
 void add_point(Action& action, std::string_view word, std::string_view usage) {
     const size_t comma = word.find(',');
     if (comma == word.npos)
-        refuse(action.place, "'" + printable(word, 40) + "' is not a point; expected " + std::string(usage));
-    action.numbers.push_back(number(word.substr(0, comma), action.place, usage));
-    action.numbers.push_back(number(word.substr(comma + 1), action.place, usage));
+        refuse(action.location, "'" + printable(word, 40) + "' is not a point; expected " + std::string(usage));
+    action.numbers.push_back(number(word.substr(0, comma), action.location, usage));
+    action.numbers.push_back(number(word.substr(comma + 1), action.location, usage));
 }
 
 void add_parameter(Action& action, std::string_view parameter, const std::string& word, std::string_view usage) {
     if (parameter == "X,Y") return add_point(action, word, usage);
     if (parameter.find('|') != parameter.npos) {
         if (word.empty() || ("|" + std::string(parameter) + "|").find("|" + word + "|") == std::string::npos)
-            refuse(action.place, "expected " + std::string(usage) + ", got '" + printable(word, 40) + "'");
+            refuse(action.location, "expected " + std::string(usage) + ", got '" + printable(word, 40) + "'");
         action.words.push_back(word);
     } else if (is_name(parameter)) {
         action.words.push_back(word);
     } else {
-        action.numbers.push_back(number(word, action.place, usage));
+        action.numbers.push_back(number(word, action.location, usage));
     }
 }
 
@@ -146,26 +146,26 @@ void check_wait(const Action& action) {
     const std::string& what = action.words[0];
     const bool samples = what == "samples";
     constexpr const char* usage = "wait idle, wait job, wait SECONDS or wait samples N";
-    if (samples != (action.numbers.size() == 1)) refuse(action.place, std::string("expected ") + usage);
-    if (what != "idle" && what != "job" && !samples && number(what, action.place, usage) < 0)
-        refuse(action.place, "seconds cannot be negative");
+    if (samples != (action.numbers.size() == 1)) refuse(action.location, std::string("expected ") + usage);
+    if (what != "idle" && what != "job" && !samples && number(what, action.location, usage) < 0)
+        refuse(action.location, "seconds cannot be negative");
 }
 }
 
-Action parse_action(std::string_view text, const std::string& place) {
+Action parse_action(std::string_view text, const std::string& location) {
     const Line line = split(text);
     const auto& words = line.words;
-    if (words.empty()) refuse(place, "no action given");
-    if (line.open_quote) refuse(place, "a closing quote is missing");
+    if (words.empty()) refuse(location, "no action given");
+    if (line.open_quote) refuse(location, "a closing quote is missing");
     std::vector<std::string> names;
     const VerbInfo* found = nullptr;
     for (const VerbInfo& info : verbs()) {
         names.emplace_back(info.name);
         if (info.name == words[0]) found = &info;
     }
-    if (!found) refuse(place, unknown_name("action", words[0], names));
+    if (!found) refuse(location, unknown_name("action", words[0], names));
 
-    Action action{found->verb, {}, {}, place};
+    Action action{found->verb, {}, {}, location};
     const std::string usage =
         std::string(found->name) + (found->parameters.empty() ? "" : " ") + std::string(found->parameters);
     size_t next = 1;
@@ -173,14 +173,16 @@ Action parse_action(std::string_view text, const std::string& place) {
         const bool optional = parameter[0] == '[';
         if (optional) parameter = parameter.substr(1, parameter.size() - 2);
         if (next == words.size() && optional) continue;
-        if (next == words.size()) refuse(place, "expected " + usage);
+        if (next == words.size()) refuse(location, "expected " + usage);
         add_parameter(action, parameter, words[next++], usage);
     }
     if (next != words.size())
-        refuse(place, "unexpected parameter '" + printable(words[next], 40) + "'; expected " + usage);
+        refuse(location, "unexpected parameter '" + printable(words[next], 40) + "'; expected " + usage);
     if (action.verb == Verb::wait) check_wait(action);
-    if (action.verb == Verb::explain && action.numbers.size() == 1) refuse(place, "expected explain x y, or explain");
-    if (action.verb == Verb::zoom && action.numbers.size() == 1) refuse(place, "expected zoom NAME x y, or zoom NAME");
+    if (action.verb == Verb::explain && action.numbers.size() == 1)
+        refuse(location, "expected explain x y, or explain");
+    if (action.verb == Verb::zoom && action.numbers.size() == 1)
+        refuse(location, "expected zoom NAME x y, or zoom NAME");
     return action;
 }
 

@@ -71,7 +71,7 @@ struct Action {
     Verb verb = Verb::quit;
     std::vector<std::string> words; // parameters that are names
     std::vector<double> numbers;    // parameters that are numbers, in order
-    std::string place;              // "script.txt:3"; empty outside of scripts
+    std::string location;           // "script.txt:3"; empty outside of scripts
 };
 
 struct VerbInfo {
@@ -80,8 +80,8 @@ struct VerbInfo {
 };
 const std::vector<VerbInfo>& verbs();
 
-// Parses a line such as "orbit 30 -5". Words with spaces go in double quotes. Throws Error (refused) naming `place`.
-Action parse_action(std::string_view line, const std::string& place = {});
+// Parses a line such as "orbit 30 -5". Words with spaces go in double quotes. Throws Error (refused) naming `location`.
+Action parse_action(std::string_view line, const std::string& location = {});
 
 // One action per line; a # at the start of a line or after a space begins a comment. Throws Error (refused) naming file
 // and line.

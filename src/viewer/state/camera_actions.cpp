@@ -10,7 +10,7 @@ constexpr double largest_side = 16384;
 void move(ViewState& state, const Viewpoint& view) {
     state.view = view;
     state.view.camera.name = "view";
-    state.free = true;
+    state.free_camera = true;
     ++state.revision, ++state.motions;
 }
 
@@ -37,7 +37,7 @@ void set_camera(ViewState& state, const Action& action) {
     const std::string name = action.words.empty() ? "" : action.words[0];
     const Scene& scene = loaded_scene(state);
     if (find_camera(scene, name) != find_camera(scene, state.camera)) measure_again(state);
-    state.camera = name, state.free = false;
+    state.camera = name, state.free_camera = false;
     ++state.revision;
 }
 

@@ -12,7 +12,7 @@
 
 namespace tyndall {
 namespace {
-SceneSession& open_one(ViewState& state) {
+SceneSession& loaded_session(ViewState& state) {
     loaded_scene(state);
     if (state.loading && !state.reloading) fail(ExitCode::usage, "viewer", "another scene is loading");
     return *state.session;
@@ -40,7 +40,7 @@ std::string name_in_path(const Scene& scene, Part part, size_t index) {
     return (numbers > 0 ? "#" : "") + number;
 }
 
-std::string path_of(const Scene& scene, Thing thing) {
+std::string path_of(const Scene& scene, PartRef thing) {
     constexpr const char* lists[] = {"lights/", "media/", "cameras/"};
     if (thing.part == Part::scene) return "scene";
     return lists[static_cast<int>(thing.part)] + name_in_path(scene, thing.part, thing.index);
@@ -57,7 +57,7 @@ double seconds_of(const ViewState& state) { return moment_of(*state.scene, state
 
 // The scene's exposure changes only how an image is displayed, not the rendering.
 void edit_scene(ViewState& state, std::string_view path, std::string_view value, double drag) {
-    SceneSession& session = open_one(state);
+    SceneSession& session = loaded_session(state);
     const Edit change = parse_edit(session.scene, path, value, seconds_of(state));
     edit(session, change, drag > 0 ? static_cast<uint64_t>(drag) : 0);
     if (change.part == Part::scene && change.property == "exposure")
@@ -67,26 +67,26 @@ void edit_scene(ViewState& state, std::string_view path, std::string_view value,
 }
 
 void undo_edit(ViewState& state) {
-    if (!undo(open_one(state))) return say_done(state, "nothing to undo");
+    if (!undo(loaded_session(state))) return say_done(state, "nothing to undo");
     show_edits(state);
 }
 
 void redo_edit(ViewState& state) {
-    if (!redo(open_one(state))) return say_done(state, "nothing to redo");
+    if (!redo(loaded_session(state))) return say_done(state, "nothing to redo");
     show_edits(state);
 }
 
 void cancel_drag(ViewState& state, double drag) {
-    if (take_back(open_one(state), static_cast<uint64_t>(std::max(drag, 0.0)))) show_edits(state);
+    if (discard_drag(loaded_session(state), static_cast<uint64_t>(std::max(drag, 0.0)))) show_edits(state);
 }
 
 void save_scene(ViewState& state, const std::filesystem::path& file) {
-    SceneSession& session = open_one(state);
+    SceneSession& session = loaded_session(state);
     if (file.empty()) {
         save(session);
     } else {
         save_as(session, file);
-        state.stage = std::make_shared<Scene>(session.scene); // has the new file name
+        state.render_copy = std::make_shared<Scene>(session.scene); // has the new file name
         show_edits(state);
     }
     state.scene_file = session.scene.file, state.file_error.clear();
@@ -94,7 +94,7 @@ void save_scene(ViewState& state, const std::filesystem::path& file) {
 }
 
 void open_scene(ViewState& state, const Action& action) {
-    if (action.place.empty() && is_unsaved(state)) {
+    if (action.location.empty() && is_unsaved(state)) {
         state.asked = action;
         return;
     }
@@ -112,7 +112,7 @@ void close_window(ViewState& state, const Action& action) {
     if (is_unsaved(state) || state.job)
         state.asked = action;
     else
-        state.leaving = true;
+        state.closing = true;
 }
 
 void answer(ViewState& state, const std::string& word) {
@@ -122,7 +122,7 @@ void answer(ViewState& state, const std::string& word) {
     const Action action = *std::exchange(state.asked, std::nullopt);
     if (word == "cancel") return;
     if (action.verb == Verb::close)
-        state.leaving = true;
+        state.closing = true;
     else
         load(state, action.words[0]);
 }
@@ -132,7 +132,7 @@ void show_edits(ViewState& state) {
     ++state.revision;
 }
 
-Action selection_of(const Scene& scene, Thing thing) { return {Verb::select, {path_of(scene, thing)}, {}, {}}; }
+Action selection_of(const Scene& scene, PartRef thing) { return {Verb::select, {path_of(scene, thing)}, {}, {}}; }
 
 Action action_of(const Scene& scene, const Edit& edit, uint64_t drag) {
     const Property& property = find_property(scene, edit.part, edit.index, edit.property);
@@ -149,8 +149,8 @@ constexpr VerbAction table[] = {
     {Verb::reload, [](ViewState& state, const Action&) { reload_scene(state); }},
     {Verb::close, close_window},
     {Verb::answer, [](ViewState& state, const Action& action) { answer(state, action.words[0]); }},
-    {Verb::select, [](ViewState& state,
-                      const Action& action) { state.selected = parse_thing(loaded_scene(state), action.words[0]); }},
+    {Verb::select,
+     [](ViewState& state, const Action& action) { state.selected = parse_part(loaded_scene(state), action.words[0]); }},
     {Verb::edit,
      [](ViewState& state, const Action& action) {
          edit_scene(state, action.words[0], action.words[1], action.numbers.empty() ? 0 : action.numbers[0]);

@@ -27,7 +27,7 @@ void answer(ViewState& state, const std::string& word);
 void show_edits(ViewState& state);
 
 // The action that selects a part of the scene.
-Action selection_of(const Scene& scene, Thing thing);
+Action selection_of(const Scene& scene, PartRef thing);
 
 // The action that makes an edit: its words give the same part and, to the bit, the same numbers.
 Action action_of(const Scene& scene, const Edit& edit, uint64_t drag);

@@ -43,7 +43,7 @@ std::optional<Action> action_of_key(const ViewState& state, std::string_view key
     if (key == "f1") return Action{Verb::help, {toggled(state.help)}, {}, {}};
     if (key == "l") return Action{Verb::loop, {toggled(state.loop)}, {}, {}};
     if (key == "v") return show_next(state);
-    if (key == "p") return Action{Verb::snapshot, {usual_file_name(state)}, {}, {}};
+    if (key == "p") return Action{Verb::snapshot, {default_file_name(state)}, {}, {}};
     if (!state.scene) return {};
     if (key == "w") return fly(state, {0, 0, 1});
     if (key == "s") return fly(state, {0, 0, -1});

@@ -53,19 +53,19 @@ void take_scene(ViewState& state, LoadedScene loaded) {
     if (again && !same_file) return; // meanwhile it was saved as another file
     const std::string selected = selected_name(state);
     if (again) {
-        std::vector<std::string> lost = go_on_with(*state.session, std::move(*loaded.session));
+        std::vector<std::string> lost = rebase_onto(*state.session, std::move(*loaded.session));
         if (!lost.empty()) state.message = "reloaded; lost: " + joined(lost, "; "), state.message_is_error = true;
     } else {
         state.session = std::move(loaded.session);
     }
     state.scene = {state.session, &state.session->scene};
-    state.stage = std::move(loaded.stage);
+    state.render_copy = std::move(loaded.render_copy);
     state.scene_file = state.scene->file;
     state.gaps = missing_frames(*state.scene);
     show_edits(state);
     select_by_name(state, selected);
     if (same_file) return;
-    state.free = false, state.playing = false;
+    state.free_camera = false, state.playing = false;
     measure_again(state);
     state.explain.reset();
     state.volume.medium.clear();
@@ -81,13 +81,13 @@ bool has_camera(const ViewState& state) {
 }
 
 Camera camera_now(const ViewState& state) {
-    if (state.free) return state.view.camera;
+    if (state.free_camera) return state.view.camera;
     const Scene& scene = loaded_scene(state);
     return camera_at(scene, find_camera(scene, state.camera), seconds_of(state));
 }
 
 Viewpoint viewpoint(const ViewState& state) {
-    if (state.free) return state.view;
+    if (state.free_camera) return state.view;
     const Scene& scene = loaded_scene(state);
     return viewpoint_of(scene, find_camera(scene, state.camera), seconds_of(state));
 }
@@ -96,7 +96,7 @@ namespace {
 std::string lens_json(const Lens& lens) {
     if (!lens) return {};
     const std::string blades =
-        formatted(", \"aperture_blades\": %d, \"blade_rotation\": %.4g", lens.blades, glm::degrees(lens.turn));
+        formatted(", \"aperture_blades\": %d, \"blade_rotation\": %.4g", lens.blades, glm::degrees(lens.rotation));
     return formatted(", \"aperture_radius\": %.4g, \"focus_distance\": %.5g", lens.radius, lens.focus) +
            (lens.blades ? blades : "");
 }
@@ -141,7 +141,7 @@ std::optional<double> exposure_now(const ViewState& state) {
 
 Request request_of(const ViewState& state, bool moving) {
     Request request;
-    request.scene = state.stage, request.edited = state.parts;
+    request.scene = state.render_copy, request.edited = state.parts;
     request.revision = state.revision, request.shown_revision = state.shown_revision;
     request.moving = moving || state.playing;
     request.frame = state.frame;
@@ -154,13 +154,13 @@ Request request_of(const ViewState& state, bool moving) {
     const auto inside = [&](ivec2 pixel) { return pixel.x < request.size.x && pixel.y < request.size.y; };
     if (state.explain && inside(*state.explain)) request.explain = state.explain;
     if (state.volume_shown) request.volume = state.volume;
-    request.shown.exposure = exposure_now(state), request.measures = state.measures;
+    request.shown.exposure = exposure_now(state), request.metering_id = state.metering_id;
     request.max_samples = state.max_samples;
     request.wanted_seconds = 1 / state.wanted_rate;
     return request;
 }
 
-std::string usual_file_name(const ViewState& state) {
+std::string default_file_name(const ViewState& state) {
     const std::filesystem::path& file = state.scene ? state.scene->file : state.scene_file;
     return file.stem().string() + "." + state.mode + frame_name(".####", state.frame) + ".exr";
 }

@@ -30,7 +30,7 @@ struct ViewState {
 
     std::shared_ptr<SceneSession> session;      // null until the first scene is there
     std::shared_ptr<const Scene> scene;         // the session's, as edited
-    std::shared_ptr<Scene> stage;               // what is rendered: the render thread's copy, without the edits ...
+    std::shared_ptr<Scene> render_copy;         // what is rendered: the render thread's copy, without the edits ...
     std::shared_ptr<const EditableParts> parts; // ... which are here
 
     std::string mode = main_mode_name(), stand_in = interactive_mode_name(), beside;
@@ -41,20 +41,20 @@ struct ViewState {
     ivec2 size{0}; // 0 = the scene's
     int max_samples = 64;
     double wanted_rate = 30;        // quick images per second
-    Shown shown;                    // with the exposure set by hand, if any
+    DisplayOptions shown;           // with the exposure set by hand, if any
     bool automatic = false;         // the exposure is measured even if the scene states one
     std::optional<double> measured; // exposure, once it is known
-    int measures = 0;               // number of requests to measure it
+    int metering_id = 0;            // number of requests to measure it
 
     double zoom = 0; // window pixels per image pixel; 0 = fit the window
     vec2 zoom_at{0}; // the image pixel at the center when zoomed
 
     std::optional<ivec2> explain; // a pixel whose ray is to be explained
     bool volume_shown = false;    // whether a medium is shown:
-    VolumeQuestion volume;
+    VolumeRequest volume;
 
-    std::string camera; // of the scene; empty = its default
-    bool free = false;  // the camera was moved by hand: `view` applies
+    std::string camera;       // of the scene; empty = its default
+    bool free_camera = false; // the camera was moved by hand: `view` applies
     Viewpoint view;
 
     int frame = 1;
@@ -68,8 +68,8 @@ struct ViewState {
     bool handles = true;          // lights are drawn in the image while the side panel shows them
     std::optional<JobStatus> job; // the one that is running
     std::optional<Action> asked;  // would lose edits or end a job, and waits for an answer
-    bool leaving = false;         // the window is to close
-    Thing selected;               // its properties are shown; may be beyond the end
+    bool closing = false;         // the window is to close
+    PartRef selected;             // its properties are shown; may be beyond the end
     std::string file_error;       // why the scene's files, as they are now, cannot be read
     std::string message;          // the last thing that went wrong, or was done
     bool message_is_error = false;
@@ -110,7 +110,7 @@ bool shows_scene_exposure(const ViewState& state);
 std::optional<double> exposure_now(const ViewState& state);
 
 // Requests a new measurement of the automatic exposure.
-inline void measure_again(ViewState& state) { state.measured.reset(), ++state.measures; }
+inline void measure_again(ViewState& state) { state.measured.reset(), ++state.metering_id; }
 
 // What to render. Needs a scene.
 Request request_of(const ViewState& state, bool moving);
@@ -125,5 +125,5 @@ struct KeyInfo {
 const std::vector<KeyInfo>& key_list();
 
 // scene.march.0001.exr
-std::string usual_file_name(const ViewState& state);
+std::string default_file_name(const ViewState& state);
 }

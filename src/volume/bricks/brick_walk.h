@@ -39,7 +39,7 @@ inline Interval<double> clip(const Box& box, const LocalRay& ray, Interval<doubl
 }
 
 // Calls a visitor and returns whether to continue; a void visitor always continues.
-template<class Visit, class... Arguments> bool goes_on(const Visit& visit, Arguments... arguments) {
+template<class Visit, class... Arguments> bool run_visitor(const Visit& visit, Arguments... arguments) {
     if constexpr (std::is_void_v<std::invoke_result_t<Visit, Arguments...>>)
         return visit(arguments...), true;
     else
@@ -63,7 +63,7 @@ void walk_cells(const LocalRay& ray, Interval<double> range, double edge, ivec3 
     for (double low = range.low;;) {
         const double next = std::min(border.x, std::min(border.y, border.z)), high = std::min(next, range.high);
         if (high > low) {
-            if (!goes_on(visit, cell, low, high)) return;
+            if (!run_visitor(visit, cell, low, high)) return;
             low = high;
         }
         if (next >= range.high) return;
@@ -85,7 +85,7 @@ void walk_bricks(const BrickPool& pool, const LocalRay& ray, Interval<double> ra
     if (range.empty()) return;
     walk_cells(ray, range, 8, ivec3(0), pool.size - 1, [&](ivec3 brick, double low, double high) {
         const int64_t cell = (int64_t{brick.x} * pool.size.y + brick.y) * pool.size.z + brick.z;
-        return pool.index[cell] == 0 || goes_on(visit, brick, cell, low, high);
+        return pool.index[cell] == 0 || run_visitor(visit, brick, cell, low, high);
     });
 }
 }

@@ -28,7 +28,7 @@ bool is_finite(const mat4& m) {
            tyndall::is_finite(vec3(m[3]));
 }
 
-float mixed(float a, float b, float weight) { return std::fma(b - a, weight, a); }
+float lerp(float a, float b, float weight) { return std::fma(b - a, weight, a); }
 }
 
 uint64_t BrickPool::bytes() const {
@@ -83,8 +83,8 @@ float sample_density(const BrickPool& pool, vec3 world_point) {
     const uint16_t* corner =
         pool.values.data() + size_t(id - 1) * brick_stride + (cell[0] % 8) * 81 + (cell[1] % 8) * 9 + cell[2] % 8;
     const auto along_z = [&](int offset) {
-        return mixed(float_from_half(corner[offset]), float_from_half(corner[offset + 1]), weight[2]);
+        return lerp(float_from_half(corner[offset]), float_from_half(corner[offset + 1]), weight[2]);
     };
-    return mixed(mixed(along_z(0), along_z(9), weight[1]), mixed(along_z(81), along_z(90), weight[1]), weight[0]);
+    return lerp(lerp(along_z(0), along_z(9), weight[1]), lerp(along_z(81), along_z(90), weight[1]), weight[0]);
 }
 }

@@ -112,7 +112,7 @@ HalfRange pack(const Corners& corners, const Sources& sources, uint16_t* values)
 std::vector<HalfRange> packed_bricks(const std::string& name, const std::vector<ivec3>& list, const Sources& sources,
                                      const BrickPool& pool, BrickArrays& arrays) {
     const double bytes = static_cast<double>(list.size()) * brick_stride * sizeof(uint16_t);
-    const double memory = static_cast<double>(machine_memory());
+    const double memory = static_cast<double>(physical_memory());
     if (bytes > memory)
         fail(ExitCode::out_of_memory, name,
              "its bricks take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) + " MB, this machine has " +

@@ -14,8 +14,8 @@ vec3 sampled(const std::array<std::shared_ptr<const BrickPool>, 3>& pools, vec3 
 }
 
 vec3 albedo_factor(const AlbedoField& field, vec3 point) {
-    const float there = sample_density(*field.there, point);
-    return there > 0 ? glm::min(sampled(field.color, point) / there, vec3(1)) : vec3(1);
+    const float coverage = sample_density(*field.coverage, point);
+    return coverage > 0 ? glm::min(sampled(field.color, point) / coverage, vec3(1)) : vec3(1);
 }
 
 vec3 emission_at(const EmissionField& field, vec3 point) {

@@ -11,8 +11,8 @@ class BlackbodyTable;
 
 // A spatially varying factor on a medium's albedo: interpolated between voxels that have a color, 1 elsewhere.
 struct AlbedoField {
-    std::array<std::shared_ptr<const BrickPool>, 3> color; // times `there`; one pool three times for a gray grid
-    std::shared_ptr<const BrickPool> there;                // 1 at voxels that have a color
+    std::array<std::shared_ptr<const BrickPool>, 3> color; // times `coverage`; one pool three times for a gray grid
+    std::shared_ptr<const BrickPool> coverage;             // 1 at voxels that have a color
     float spread = 0; // mean deviation of the factor from its mean, as a share of the scattered light
 };
 vec3 albedo_factor(const AlbedoField& field, vec3 point);

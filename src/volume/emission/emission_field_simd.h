@@ -33,16 +33,16 @@ HWY_INLINE Vec3s blackbody16(const BlackbodyTable& table, const Floats& kelvin) 
     const auto channel = [&](int c) HWY_ATTR {
         Floats low, high;
         gather_pairs(table.channel(c), at, low, high);
-        return zero_unless(warm, fused(high - low, share, low));
+        return zero_unless(warm, fma(high - low, share, low));
     };
     return {channel(0), channel(1), channel(2)};
 }
 
 // SIMD version of albedo_factor().
 HWY_NOINLINE inline Vec3s albedo_factor16(const AlbedoField& field, const Vec3s& point) {
-    const Floats there = brick_density(*field.there, point);
-    const Mask16 some = there > 0.0f;
-    const Floats inverse = 1.0f / select(some, there, 1.0f);
+    const Floats coverage = brick_density(*field.coverage, point);
+    const Mask16 some = coverage > 0.0f;
+    const Floats inverse = 1.0f / select(some, coverage, 1.0f);
     const Vec3s color = sampled16(field.color, point);
     const auto channel = [&](const Floats& c) HWY_ATTR { return select(some, min(c * inverse, 1.0f), 1.0f); };
     return {channel(color.x), channel(color.y), channel(color.z)};

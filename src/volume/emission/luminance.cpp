@@ -48,7 +48,7 @@ std::vector<ivec3> corners_of(const EmissionField& field) {
 // A leaf takes 2 KB even where its brick took almost nothing.
 void check_room(size_t leaves, const std::string& name) {
     const double bytes = static_cast<double>(leaves) * sizeof(Leaf);
-    const double memory = static_cast<double>(machine_memory());
+    const double memory = static_cast<double>(physical_memory());
     if (bytes > memory / 2)
         fail(ExitCode::out_of_memory, name,
              "the emission of its voxels takes " + std::to_string(static_cast<int64_t>(bytes / 1e6)) +

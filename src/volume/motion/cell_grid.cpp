@@ -32,7 +32,7 @@ CellGrid cells_around(dvec3 low, dvec3 high, const std::string& what) {
 Leaves filled_leaves(const std::vector<ivec3>& cells, const std::string& what,
                      const std::function<void(ivec3 cell, Leaf& leaf)>& fill) {
     const double bytes = static_cast<double>(cells.size()) * sizeof(Leaf);
-    if (bytes > static_cast<double>(machine_memory()) / 2)
+    if (bytes > static_cast<double>(physical_memory()) / 2)
         fail(ExitCode::out_of_memory, what,
              "its voxels take " + std::to_string(static_cast<int64_t>(bytes / 1e6)) +
                  " MB while the shutter is open. Use larger voxels");

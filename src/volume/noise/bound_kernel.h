@@ -48,7 +48,7 @@ HWY_INLINE Range scaled(FloatVec a, FloatVec low, FloatVec high) {
     return {hn::Min(p, q), hn::Max(p, q)};
 }
 // Range of a linear interpolation: it is linear in the weight, so the extremes are at the ends of the weight's range.
-HWY_INLINE Range mixed(const Range& a, const Range& b, const Range& weight) {
+HWY_INLINE Range lerp(const Range& a, const Range& b, const Range& weight) {
     return {hn::Min(lerp(a.low, b.low, weight.low), lerp(a.low, b.low, weight.high)),
             hn::Max(lerp(a.high, b.high, weight.low), lerp(a.high, b.high, weight.high))};
 }
@@ -79,10 +79,10 @@ HWY_INLINE Range cell_range(const GradientTable& table, const StretchPart& x, co
         return Range{hn::Add(hn::Add(a.low, b.low), c.low), hn::Add(hn::Add(a.high, b.high), c.high)};
     };
     const auto side = [&](int i) {
-        return mixed(mixed(corner(i, 0, 0), corner(i, 0, 1), z.weight()),
-                     mixed(corner(i, 1, 0), corner(i, 1, 1), z.weight()), y.weight());
+        return lerp(lerp(corner(i, 0, 0), corner(i, 0, 1), z.weight()),
+                    lerp(corner(i, 1, 0), corner(i, 1, 1), z.weight()), y.weight());
     };
-    return mixed(side(0), side(1), x.weight());
+    return lerp(side(0), side(1), x.weight());
 }
 
 // Range of an octave in each box, with a margin for rounding.

@@ -11,7 +11,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-struct VectorOfThree {
+struct FloatVec3 {
     FloatVec x, y, z;
 };
 
@@ -25,12 +25,12 @@ struct AxisWeights {
 };
 
 // Curl per cell (not per meter) at points. The three potentials share the lattice but use different bits of its hash.
-HWY_INLINE VectorOfThree noise_curl(const NoiseOctave& octave, FloatVec px, FloatVec py, FloatVec pz) {
+HWY_INLINE FloatVec3 noise_curl(const NoiseOctave& octave, FloatVec px, FloatVec py, FloatVec pz) {
     const GradientTable table(octave);
     const LatticeAxis lx = lattice_axis(octave, 0, px), ly = lattice_axis(octave, 1, py),
                       lz = lattice_axis(octave, 2, pz);
     const AxisWeights x(lx.fraction), y(ly.fraction), z(lz.fraction);
-    VectorOfThree curl{splat(0), splat(0), splat(0)};
+    FloatVec3 curl{splat(0), splat(0), splat(0)};
     const auto add_corner = [&](int i, int j, int k) {
         const IntVec seed = splat_int(octave.seed);
         const IntVec xy = hn::Xor(hn::Xor(i ? lx.high : lx.low, seed), j ? ly.high : ly.low);

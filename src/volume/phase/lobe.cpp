@@ -42,7 +42,7 @@ double mean_cosine(const PhaseLobe& lobe) {
     return g * (1 + alpha * (3 + 2 * g * g) / 5) / (1 + alpha * (1 + 2 * g * g) / 3);
 }
 
-double share_below(const PhaseLobe& lobe, double cosine) {
+double cosine_cdf(const PhaseLobe& lobe, double cosine) {
     const double g = std::abs(lobe.g), c = lobe.g < 0 ? -cosine : cosine;
     double share = 0;
     if (g > min_direction) {

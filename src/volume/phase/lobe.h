@@ -23,7 +23,7 @@ double mean_cosine(const PhaseLobe& lobe);
 double sampled_cosine(const PhaseLobe& lobe, double u);
 
 // CDF: the fraction of the lobe's light at smaller cosines.
-double share_below(const PhaseLobe& lobe, double cosine);
+double cosine_cdf(const PhaseLobe& lobe, double cosine);
 
 // Value in 1/sr, in the precision of T.
 template<class T> T lobe_value(const PhaseLobe& lobe, T cosine) {

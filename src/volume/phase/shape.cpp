@@ -30,10 +30,10 @@ double sampled_cosine(const PhaseShape& shape, double u) {
     return sampled_cosine(shape.lobes[i], std::clamp(u / shape.lobes[i].weight, 0.0, 1.0));
 }
 
-double share_below(const PhaseShape& shape, double cosine) {
-    if (shape.lobes.empty()) return share_below(shape.table, cosine);
+double cosine_cdf(const PhaseShape& shape, double cosine) {
+    if (shape.lobes.empty()) return cosine_cdf(shape.table, cosine);
     double sum = 0;
-    for (const PhaseLobe& lobe : shape.lobes) sum += lobe.weight * share_below(lobe, cosine);
+    for (const PhaseLobe& lobe : shape.lobes) sum += lobe.weight * cosine_cdf(lobe, cosine);
     return sum;
 }
 

@@ -16,8 +16,8 @@ struct PhaseShape {
 PhaseShape shape_of(std::vector<PhaseLobe> lobes);
 PhaseShape shape_of(PhaseTable table);
 
-double sampled_cosine(const PhaseShape& shape, double u);   // as for a lobe
-double share_below(const PhaseShape& shape, double cosine); // likewise
+double sampled_cosine(const PhaseShape& shape, double u);  // as for a lobe
+double cosine_cdf(const PhaseShape& shape, double cosine); // likewise
 
 // A lower bound of the value, 1/sr; 0 if values may be 0.
 double min_value(const PhaseShape& shape);

@@ -23,7 +23,7 @@ int half_for(double step) {
 
 PhaseTable empty_table(int half) {
     PhaseTable table{half, {}, {}};
-    table.values.resize(static_cast<size_t>(2 * half + 1)), table.before.resize(table.values.size());
+    table.values.resize(static_cast<size_t>(2 * half + 1)), table.cdf.resize(table.values.size());
     return table;
 }
 
@@ -42,9 +42,9 @@ template<class Value> double fill(PhaseTable& table, const Value& value) {
         sum += circle * 0.5 * (given[i] + given[i + 1]) * (table.cosine(i) - table.cosine(i + 1));
     if (!(sum > 0)) return 0;
     for (size_t i = 0; i < given.size(); ++i) table.values[i] = static_cast<float>(given[i] / sum);
-    for (size_t i = 0; i + 1 < given.size(); ++i) table.before[i + 1] = table.before[i] + cell_light(table, i);
-    const double all = table.before.back();
-    for (double& share : table.before) share /= all;
+    for (size_t i = 0; i + 1 < given.size(); ++i) table.cdf[i + 1] = table.cdf[i] + cell_light(table, i);
+    const double all = table.cdf.back();
+    for (double& share : table.cdf) share /= all;
     return sum;
 }
 
@@ -120,22 +120,22 @@ double mean_cosine(const PhaseTable& table) {
 
 double sampled_cosine(const PhaseTable& table, double u) {
     const double share = 1 - u;
-    const auto after = std::ranges::upper_bound(table.before, share);
+    const auto after = std::ranges::upper_bound(table.cdf, share);
     const size_t last = table.values.size() - 2;
-    const size_t i = std::min(static_cast<size_t>(std::max<std::ptrdiff_t>(after - table.before.begin() - 1, 0)), last);
-    const double inside = table.before[i + 1] - table.before[i];
-    const double r = inside > 0 ? std::clamp((share - table.before[i]) / inside, 0.0, 1.0) : 0.5;
+    const size_t i = std::min(static_cast<size_t>(std::max<std::ptrdiff_t>(after - table.cdf.begin() - 1, 0)), last);
+    const double inside = table.cdf[i + 1] - table.cdf[i];
+    const double r = inside > 0 ? std::clamp((share - table.cdf[i]) / inside, 0.0, 1.0) : 0.5;
     // Invert the CDF of a linear segment: a x + (b - a) x² / 2 = r (a + b) / 2.
     const double a = table.values[i], b = table.values[i + 1], root = std::sqrt(a * a + r * (b * b - a * a));
     const double x = a + root > 0 ? std::min(r * (a + b) / (a + root), 1.0) : r;
     return table.cosine(i) + x * (table.cosine(i + 1) - table.cosine(i));
 }
 
-double share_below(const PhaseTable& table, double cosine) {
+double cosine_cdf(const PhaseTable& table, double cosine) {
     const auto i = std::min(static_cast<size_t>(place_of(cosine) * table.half), table.values.size() - 2);
     const double a = table.values[i], wide = table.cosine(i) - table.cosine(i + 1);
     const double x = std::clamp((table.cosine(i) - cosine) / wide, 0.0, 1.0), b = a + x * (table.values[i + 1] - a);
-    return 1 - (table.before[i] + circle * 0.5 * (a + b) * x * wide);
+    return 1 - (table.cdf[i] + circle * 0.5 * (a + b) * x * wide);
 }
 
 double narrowness(const PhaseTable& table) {

@@ -13,7 +13,7 @@ namespace tyndall {
 struct PhaseTable {
     int half = 0;
     std::vector<float> values;
-    std::vector<double> before; // per entry: fraction of the light at larger cosines
+    std::vector<double> cdf; // per entry: fraction of the light at larger cosines
 
     double cosine(size_t i) const;
     bool empty() const { return values.empty(); }
@@ -42,7 +42,7 @@ PhaseTable make_table(const std::function<double(double)>& value, double finest)
 
 double mean_cosine(const PhaseTable& table);
 double sampled_cosine(const PhaseTable& table, double u); // as for a lobe
-double share_below(const PhaseTable& table, double cosine);
+double cosine_cdf(const PhaseTable& table, double cosine);
 
 // |g| of the Henyey-Greenstein lobe as narrow as the narrower of the forward and backward peaks.
 double narrowness(const PhaseTable& table);

@@ -40,7 +40,7 @@ float fog_reach(std::span<const Medium> media, const Ray& ray) {
     return std::min(reach, ray.t_max);
 }
 
-Interval<float> fog_stretch(std::span<const Medium> media, const Ray& ray) {
+Interval<float> fog_interval(std::span<const Medium> media, const Ray& ray) {
     Interval<float> stretch{infinity, 0};
     for (const Medium& medium : media) {
         const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});

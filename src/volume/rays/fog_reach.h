@@ -12,5 +12,5 @@ struct Medium;
 float fog_reach(std::span<const Medium> media, const Ray& ray);
 
 // The interval from the first to the last fog on a ray; empty if there is none, infinite if a medium is unbounded.
-Interval<float> fog_stretch(std::span<const Medium> media, const Ray& ray);
+Interval<float> fog_interval(std::span<const Medium> media, const Ray& ray);
 }

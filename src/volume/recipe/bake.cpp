@@ -88,7 +88,7 @@ std::vector<VdbGridContent> grids_of(const FogRecipe& recipe, const BakeOptions&
 }
 
 // Fills the velocity components of a leaf from its temperature (null: no fire).
-void grow_velocity(const Growth& growth, const FogMotion& motion, ivec3 origin, const Leaf* kelvin,
+void grow_velocity(const RecipeGrid& growth, const FogMotion& motion, ivec3 origin, const Leaf* kelvin,
                    std::span<Leaf, 3> leaves) {
     std::array<vec3, 512> points, velocity;
     for (int v = 0; v < 512; ++v) {
@@ -105,7 +105,7 @@ void grow_velocity(const Growth& growth, const FogMotion& motion, ivec3 origin, 
 
 VdbImage frame_image(const FogRecipe& recipe, double seconds, Metadata metadata, const BakeOptions& options,
                      const std::string& where) {
-    const Growth growth = start_growth(recipe, seconds);
+    const RecipeGrid growth = make_recipe_grid(recipe, seconds);
     const std::optional<FogMotion> motion =
         options.velocity ? std::optional(fog_motion(recipe, seconds)) : std::nullopt;
     const VdbContent content{.grids = grids_of(recipe, options),
@@ -115,7 +115,7 @@ VdbImage frame_image(const FogRecipe& recipe, double seconds, Metadata metadata,
                              .origins = growth.origins,
                              .fill = [&](size_t number, std::span<Leaf> leaves) {
                                  Leaf* const kelvin = recipe.fire ? &leaves[1] : nullptr;
-                                 grow_leaf(growth, number, leaves[0], kelvin);
+                                 generate_leaf(growth, number, leaves[0], kelvin);
                                  if (motion)
                                      grow_velocity(growth, *motion, growth.origins[number], kelvin, leaves.last<3>());
                              }};

@@ -10,7 +10,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
-struct Burning {
+struct FlameSample {
     Floats density, kelvin;
 };
 
@@ -32,7 +32,7 @@ HWY_INLINE Floats still_heat(const FireField& fire, const Vec3s& p) {
 
 // Heat at the displaced position; above 0 only where there is flame.
 HWY_INLINE Floats fire_heat(const FireField& fire, const Vec3s& p, const Vec3s& displacement, int& finished) {
-    const Vec3s q = fused(displacement, fire_onset(fire, p.y), p);
+    const Vec3s q = fma(displacement, fire_onset(fire, p.y), p);
     const Floats still = still_heat(fire, q);
     if (fire.flicker == 0) return still;
     const Floats gain = flicker_at(fire, q.y), needed = -still / gain;
@@ -56,25 +56,25 @@ HWY_INLINE Mask16 inside_bounds(const FogField& field, const Vec3s& p) {
 }
 
 // Density and temperature of flame and smoke at sixteen points.
-HWY_INLINE Burning fire_fog(const FogField& field, const Vec3s& p, int& finished) {
+HWY_INLINE FlameSample fire_fog(const FogField& field, const Vec3s& p, int& finished) {
     const FireField& fire = field.fire;
     const Vec3s moved = field.swirl_gain == 0 ? splat(vec3(0)) : displacement(field, p);
-    Weighing weigh = weighing(field, p);
-    weigh.scale = weigh.scale * plume(fire, p, p.y);
-    const Mask16 open = weigh.scale >= min_density;
+    DensityTerms terms = density_terms(field, p);
+    terms.scale = terms.scale * plume(fire, p, p.y);
+    const Mask16 open = terms.scale >= min_density;
     Floats smoke = 0.0f;
     if (any(open)) {
         const Vec3s q = p + moved;
-        const Floats wanted = select(open, weigh.needed, infinity);
+        const Floats wanted = select(open, terms.needed, infinity);
         Floats noise;
         for (size_t i = 0; i < vectors_per_packet; ++i)
             noise.part[i] =
                 sum_of_octaves(field.noise, q.x.part[i], q.y.part[i], q.z.part[i], wanted.part[i], finished);
-        smoke = density_of(field, noise, weigh);
+        smoke = density_of(field, noise, terms);
     }
     const Floats heat = zero_unless(inside_bounds(field, p), clamp01(fire_heat(fire, p, moved, finished)));
     const Floats density = max(smoke, heat * fire.soot);
-    Burning result;
+    FlameSample result;
     result.density = zero_unless(density >= min_density, density);
     result.kelvin = select(heat > 0.0f, fire.edge + fire.span * heat, zero_unless(result.density > 0.0f, fire.air));
     return result;

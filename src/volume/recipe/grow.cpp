@@ -96,9 +96,9 @@ struct ActiveBox {
 };
 }
 
-Growth start_growth(const FogRecipe& recipe, double seconds) {
+RecipeGrid make_recipe_grid(const FogRecipe& recipe, double seconds) {
     VoxelGrid grid = voxel_grid(recipe);
-    Growth growth;
+    RecipeGrid growth;
     const double step = recipe.voxel_size;
     growth.index_to_world = glm::scale(glm::translate(dmat4(1), dvec3(recipe.bounds.low) + 0.5 * step), dvec3(step));
     growth.field = fog_field(recipe, seconds);
@@ -108,7 +108,7 @@ Growth start_growth(const FogRecipe& recipe, double seconds) {
     return growth;
 }
 
-int grow_leaf(const Growth& growth, size_t number, Leaf& density, Leaf* kelvin) {
+int generate_leaf(const RecipeGrid& growth, size_t number, Leaf& density, Leaf* kelvin) {
     assert(growth.field.fire.burns == (kelvin != nullptr));
     const ivec3 origin = growth.origins[number];
     const float *x = &growth.at[0][origin.x], *y = &growth.at[1][origin.y], *z = &growth.at[2][origin.z];
@@ -120,7 +120,8 @@ int grow_leaf(const Growth& growth, size_t number, Leaf& density, Leaf* kelvin) 
 
 namespace {
 // All nonempty leaves. grow_one(number, leaf) fills one and returns how many voxels needed all octaves.
-template<class GrowOne> SparseVolume grown(const Growth& growth, const GrowOne& grow_one, GrowReport* report) {
+template<class GrowOne>
+SparseVolume generated(const RecipeGrid& growth, const GrowOne& grow_one, GenerateReport* report) {
     SparseVolume volume;
     volume.index_to_world = growth.index_to_world;
 
@@ -143,7 +144,7 @@ template<class GrowOne> SparseVolume grown(const Growth& growth, const GrowOne& 
     });
 
     const ivec3 leaves = (growth.size + 7) / 8;
-    GrowReport work{.leaves = int64_t{leaves.x} * leaves.y * leaves.z, .tried = static_cast<int64_t>(count)};
+    GenerateReport work{.leaves = int64_t{leaves.x} * leaves.y * leaves.z, .tried = static_cast<int64_t>(count)};
     ActiveBox all;
     size_t kept = 0;
     for (size_t i = 0; i < count; ++i) {
@@ -164,27 +165,27 @@ template<class GrowOne> SparseVolume grown(const Growth& growth, const GrowOne& 
 }
 }
 
-SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report) {
-    const Growth growth = start_growth(recipe, seconds);
-    const auto fog = [&](size_t number, Leaf& leaf) { return grow_leaf(growth, number, leaf, nullptr); };
+SparseVolume generate(const FogRecipe& recipe, double seconds, GenerateReport* report) {
+    const RecipeGrid growth = make_recipe_grid(recipe, seconds);
+    const auto fog = [&](size_t number, Leaf& leaf) { return generate_leaf(growth, number, leaf, nullptr); };
     const auto smoke = [&](size_t number, Leaf& leaf) {
         Leaf kelvin;
-        return grow_leaf(growth, number, leaf, &kelvin);
+        return generate_leaf(growth, number, leaf, &kelvin);
     };
-    SparseVolume volume = recipe.fire ? grown(growth, smoke, report) : grown(growth, fog, report);
+    SparseVolume volume = recipe.fire ? generated(growth, smoke, report) : generated(growth, fog, report);
     volume.name = recipe.name;
     return volume;
 }
 
-SparseVolume grow_temperature(const FogRecipe& recipe, double seconds) {
+SparseVolume generate_temperature(const FogRecipe& recipe, double seconds) {
     SparseVolume volume;
     if (recipe.fire) {
-        const Growth growth = start_growth(recipe, seconds);
+        const RecipeGrid growth = make_recipe_grid(recipe, seconds);
         const auto kelvin = [&](size_t number, Leaf& leaf) {
             Leaf density;
-            return grow_leaf(growth, number, density, &leaf);
+            return generate_leaf(growth, number, density, &leaf);
         };
-        volume = grown(growth, kelvin, nullptr);
+        volume = generated(growth, kelvin, nullptr);
     }
     volume.name = temperature_name;
     return volume;

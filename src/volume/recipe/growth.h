@@ -1,4 +1,4 @@
-// Leaf-by-leaf evaluation of a recipe, for streaming uses; grow() keeps all leaves.
+// Leaf-by-leaf evaluation of a recipe, for streaming uses; generate() keeps all leaves.
 #pragma once
 #include "volume/bricks/sparse_volume.h"
 #include "volume/recipe/field.h"
@@ -7,7 +7,7 @@
 #include <vector>
 
 namespace tyndall {
-struct Growth {
+struct RecipeGrid {
     dmat4 index_to_world{1};
     std::vector<ivec3> origins; // of the leaves that may contain fog, ascending; some turn out empty
     ivec3 size{0};              // voxels within the bounds
@@ -17,9 +17,9 @@ struct Growth {
 };
 
 // Throws Error: refused (no voxel fits), out_of_memory (over 2^33 voxels in the bounds).
-Growth start_growth(const FogRecipe& recipe, double seconds);
+RecipeGrid make_recipe_grid(const FogRecipe& recipe, double seconds);
 
 // Fills the density and, for a recipe with fire, the temperature of leaf `number`; `kelvin` must be null without fire.
 // Returns how many of its voxels needed all octaves.
-int grow_leaf(const Growth& growth, size_t number, Leaf& density, Leaf* kelvin);
+int generate_leaf(const RecipeGrid& growth, size_t number, Leaf& density, Leaf* kelvin);
 }

@@ -55,7 +55,7 @@ HWY_INLINE Floats needed_noise(const FogField& field, const Floats& shape_distan
 HWY_INLINE Vec3s displacement(const FogField& field, const Vec3s& p) {
     Vec3s result;
     for (size_t i = 0; i < vectors_per_packet; ++i) {
-        const VectorOfThree curl = noise_curl(field.swirl, p.x.part[i], p.y.part[i], p.z.part[i]);
+        const FloatVec3 curl = noise_curl(field.swirl, p.x.part[i], p.y.part[i], p.z.part[i]);
         result.x.part[i] = curl.x, result.y.part[i] = curl.y, result.z.part[i] = curl.z;
     }
     return result * field.swirl_gain;
@@ -98,13 +98,13 @@ HWY_INLINE void sums_along_column(const NoiseSum& sum, const float* x, FloatVec 
 }
 
 // Density scale and noise threshold at sixteen points.
-struct Weighing {
+struct DensityTerms {
     Floats scale, needed, wanted; // wanted: `needed`, or infinity where the scale is negligible
     bool open = false;
 };
-HWY_INLINE Weighing weighing(const FogField& field, const Vec3s& p) {
+HWY_INLINE DensityTerms density_terms(const FogField& field, const Vec3s& p) {
     const Floats distance = field.shape == FogShape::box ? 0.0f : squared_shape_distance(field, p);
-    Weighing result;
+    DensityTerms result;
     result.scale = envelope(field, p, p.y, distance);
     const Mask16 open = result.scale >= min_density;
     result.open = any(open);
@@ -113,38 +113,38 @@ HWY_INLINE Weighing weighing(const FogField& field, const Vec3s& p) {
     return result;
 }
 
-HWY_INLINE Floats density_of(const FogField& field, const Floats& noise, const Weighing& weigh) {
-    const Floats excess = 0.5f * (noise - weigh.needed);
-    Floats density = clamp01(excess * field.gain) * weigh.scale;
+HWY_INLINE Floats density_of(const FogField& field, const Floats& noise, const DensityTerms& terms) {
+    const Floats excess = 0.5f * (noise - terms.needed);
+    Floats density = clamp01(excess * field.gain) * terms.scale;
     if (field.soft_edge > 0) density = density * smoothstep01(excess * (1 / field.soft_edge));
     return zero_unless(density >= min_density, density);
 }
 
 // Densities at sixteen points. `finished` counts the points that needed every octave.
 HWY_INLINE Floats fog_density(const FogField& field, const Vec3s& p, int& finished) {
-    const Weighing weigh = weighing(field, p);
-    if (!weigh.open) return 0.0f;
+    const DensityTerms terms = density_terms(field, p);
+    if (!terms.open) return 0.0f;
     const Vec3s q = field.swirl_gain == 0 ? p : p + displacement(field, p);
     Floats noise;
     for (size_t i = 0; i < vectors_per_packet; ++i)
         noise.part[i] =
-            sum_of_octaves(field.noise, q.x.part[i], q.y.part[i], q.z.part[i], weigh.wanted.part[i], finished);
-    return density_of(field, noise, weigh);
+            sum_of_octaves(field.noise, q.x.part[i], q.y.part[i], q.z.part[i], terms.wanted.part[i], finished);
+    return density_of(field, noise, terms);
 }
 
 // fog_density() without swirl, at eight x along a column.
 HWY_INLINE void fog_column(const FogField& field, const float* x, const Floats& y, const Floats& z, Floats* densities,
                            int& finished) {
-    Weighing weigh[8];
+    DensityTerms terms[8];
     Floats noise[8];
-    for (int i = 0; i < 8; ++i) weigh[i] = weighing(field, {x[i], y, z});
+    for (int i = 0; i < 8; ++i) terms[i] = density_terms(field, {x[i], y, z});
     for (size_t part = 0; part < vectors_per_packet; ++part) {
         FloatVec wanted[8], totals[8];
-        for (int i = 0; i < 8; ++i) wanted[i] = weigh[i].wanted.part[part];
+        for (int i = 0; i < 8; ++i) wanted[i] = terms[i].wanted.part[part];
         sums_along_column(field.noise, x, y.part[part], z.part[part], wanted, totals, finished);
         for (int i = 0; i < 8; ++i) noise[i].part[part] = totals[i];
     }
-    for (int i = 0; i < 8; ++i) densities[i] = weigh[i].open ? density_of(field, noise[i], weigh[i]) : 0.0f;
+    for (int i = 0; i < 8; ++i) densities[i] = terms[i].open ? density_of(field, noise[i], terms[i]) : 0.0f;
 }
 
 // True for boxes that may contain fog (conservative). Boxes bound the sample points, inclusive.

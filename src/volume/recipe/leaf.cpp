@@ -42,7 +42,7 @@ int fill_fire_leaf_kernel(const FogField& field, const float* x, const float* y,
             float ys[16], zs[16];
             for (int lane = 0; lane < 16; ++lane) ys[lane] = y[j + lane / 4], zs[lane] = z[k + lane % 4];
             for (int i = 0; i < 8; ++i) {
-                const Burning burning = fire_fog(field, {x[i], load(ys), load(zs)}, finished);
+                const FlameSample burning = fire_fog(field, {x[i], load(ys), load(zs)}, finished);
                 store_rows(burning.density, i, j, k, values);
                 store_rows(burning.kelvin, i, j, k, kelvin);
             }

@@ -32,7 +32,7 @@ HWY_INLINE Vec3s velocity_of(const FogMotion& motion, const Vec3s& p, const Mask
     const auto slope = [&](vec3 axis) {
         const Vec3s high = p + splat(axis * reach), low = p - splat(axis * reach);
         const Vec3s rise = swirl_reaching(motion.now, high, flame) - swirl_reaching(motion.now, low, flame);
-        return fused(rise, 0.5f / reach, splat(axis));
+        return fma(rise, 0.5f / reach, splat(axis));
     };
     const Vec3s x = slope({1, 0, 0}), y = slope({0, 1, 0}), z = slope({0, 0, 1});
     const Vec3s drift =

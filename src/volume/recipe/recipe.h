@@ -70,7 +70,7 @@ void recipe_velocity(const FogRecipe& recipe, double seconds, std::span<const ve
                      std::span<const float> kelvin, std::span<vec3> velocity);
 
 // How much work the noise bounds saved.
-struct GrowReport {
+struct GenerateReport {
     int64_t leaves = 0;   // inside the bounds
     int64_t tried = 0;    // not culled by the bound over their box
     int64_t kept = 0;     // contain fog
@@ -81,10 +81,10 @@ struct GrowReport {
 
 // The nonempty leaves of the recipe at one time, by ascending origin. Voxel centers are at bounds.low + (i + ½) ·
 // voxel_size. Throws Error: refused (no voxel fits), out_of_memory (over 2^33 voxels in the bounds).
-SparseVolume grow(const FogRecipe& recipe, double seconds, GrowReport* report = nullptr);
+SparseVolume generate(const FogRecipe& recipe, double seconds, GenerateReport* report = nullptr);
 
 // The same for the temperature, kelvin.
-SparseVolume grow_temperature(const FogRecipe& recipe, double seconds);
+SparseVolume generate_temperature(const FogRecipe& recipe, double seconds);
 
 // 32 hex digits over every field that changes the result, the voxel size and the program's format version.
 std::string recipe_hash(const FogRecipe& recipe);

@@ -32,7 +32,7 @@ std::string label(const ByteCursor& file, const VdbGridEntry& grid) {
     return file.where + ": grid \"" + printable(grid.name, 80) + "\"";
 }
 
-std::string obstacle(const VdbGridEntry& grid, float width) {
+std::string grid_problem(const VdbGridEntry& grid, float width) {
     if (!is_scalar_float(grid) && (grid.type == "float" || grid.type == "double"))
         return "has the tree shape " + printable(grid.tree_shape, 40) + "; only 5_4_3 is supported";
     if (!is_scalar_float(grid)) return "holds " + printable(grid.type, 40) + " values, not a density per voxel";
@@ -49,10 +49,10 @@ std::string key_of(const VdbDirectory& directory, const VdbGridEntry& grid) {
     return grid.name + "[" + std::to_string(std::ranges::find(alike, &grid) - alike.begin()) + "]";
 }
 
-const VdbGridEntry* fog_of(const VdbDirectory& directory) {
+const VdbGridEntry* default_grid(const VdbDirectory& directory) {
     std::vector<const VdbGridEntry*> usable, fog;
     for (const VdbGridEntry& grid : directory.grids) {
-        if (!obstacle(grid).empty()) continue;
+        if (!grid_problem(grid).empty()) continue;
         if (grid.name == "density") return &grid;
         if (role_of_name(grid.name) != GridRole::density) continue;
         usable.push_back(&grid);
@@ -77,11 +77,11 @@ std::string listing(const VdbDirectory& directory) {
 [[noreturn]] void refuse_without_fog(const VdbDirectory& directory, const ByteCursor& file) {
     const auto named = grids_named(directory, "density");
     const bool one = directory.grids.size() == 1;
-    const bool any = std::ranges::any_of(directory.grids, [](const auto& grid) { return obstacle(grid).empty(); });
+    const bool any = std::ranges::any_of(directory.grids, [](const auto& grid) { return grid_problem(grid).empty(); });
     const VdbGridEntry& first = named.empty() ? directory.grids.front() : *named.front();
     if (any && one) refuse(label(file, first), "is not named as a density; to use it as fog, set \"grid\" to its name");
     const std::string others = "; set \"grid\" to one of " + listing(directory);
-    if (one || !named.empty()) refuse(label(file, first), obstacle(first) + (any ? others : ""));
+    if (one || !named.empty()) refuse(label(file, first), grid_problem(first) + (any ? others : ""));
     refuse(file.where, any ? "cannot tell which grid is the density" + others
                            : "none of its grids can be used as fog: " + listing(directory));
 }
@@ -96,13 +96,13 @@ const VdbGridEntry& existing_grid(const VdbDirectory& directory, const std::stri
 const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string& wanted, float width,
                                 const ByteCursor& file) {
     if (wanted.empty()) {
-        if (const VdbGridEntry* fog = fog_of(directory)) return *fog;
-        const bool one = width > 0 && directory.grids.size() == 1 && obstacle(directory.grids[0], width).empty();
+        if (const VdbGridEntry* fog = default_grid(directory)) return *fog;
+        const bool one = width > 0 && directory.grids.size() == 1 && grid_problem(directory.grids[0], width).empty();
         if (one) return directory.grids.front();
         refuse_without_fog(directory, file);
     }
     const VdbGridEntry& grid = existing_grid(directory, wanted, file);
-    if (const std::string why = obstacle(grid, width); !why.empty()) refuse(label(file, grid), why);
+    if (const std::string why = grid_problem(grid, width); !why.empty()) refuse(label(file, grid), why);
     return grid;
 }
 

@@ -11,17 +11,17 @@ namespace tyndall {
 std::string label(const ByteCursor& file, const VdbGridEntry& grid);
 
 // Why a grid cannot be used as fog; empty if it can. `width`: fog width of a level set, 0 if none is given.
-std::string obstacle(const VdbGridEntry& grid, float width = 0);
+std::string grid_problem(const VdbGridEntry& grid, float width = 0);
 
 // The key of a grid in scenes: its name, with an index if several share the name or it is empty.
 std::string key_of(const VdbDirectory& directory, const VdbGridEntry& grid);
 
 // The default if no grid is named: the first usable grid named "density"; else the only usable grid whose name does not
 // suggest another quantity, or the only one of these with class fog volume; else null.
-const VdbGridEntry* fog_of(const VdbDirectory& directory);
+const VdbGridEntry* default_grid(const VdbDirectory& directory);
 
-// The grid to read as fog: by name or name[index], or fog_of() if `wanted` is empty. Throws Error (refused), listing
-// the grids for an unknown name.
+// The grid to read as fog: by name or name[index], or default_grid() if `wanted` is empty. Throws Error (refused),
+// listing the grids for an unknown name.
 const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string& wanted, float width,
                                 const ByteCursor& file);
 

@@ -287,7 +287,7 @@ EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options,
         }
 
         // The UUID is a hash of the content, so equal content gives equal files.
-        set_identity(fog.heads[0], content_hash(fog.pieces()));
+        set_uuid(fog.heads[0], content_hash(fog.pieces()));
         return fog;
     });
 }

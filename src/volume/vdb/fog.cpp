@@ -26,14 +26,14 @@ uint64_t voxel_count(const Tile& tile) {
     return static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) * static_cast<uint64_t>(size.z);
 }
 
-struct Mended {
+struct Corrections {
     uint64_t non_finite = 0, negative = 0;
 };
 
 // Clamps nonfinite and negative values to 0 and counts them.
-float cleaned(float value, uint64_t voxels, Mended& mended) {
-    if (!std::isfinite(value)) return mended.non_finite += voxels, 0.0f;
-    if (value < 0) return mended.negative += voxels, 0.0f;
+float cleaned(float value, uint64_t voxels, Corrections& corrections) {
+    if (!std::isfinite(value)) return corrections.non_finite += voxels, 0.0f;
+    if (value < 0) return corrections.negative += voxels, 0.0f;
     return value;
 }
 
@@ -50,7 +50,7 @@ bool is_clean(const Leaf& leaf, bool& any) {
 }
 
 // Returns true if the leaf still has nonzero values.
-bool clean_leaf(Leaf& leaf, const ActiveBox& box, Mended& mended) {
+bool clean_leaf(Leaf& leaf, const ActiveBox& box, Corrections& corrections) {
     const bool inside = contains(box, leaf.origin, leaf.origin + 7);
     bool any = false;
     if (inside && is_clean(leaf, any)) return any;
@@ -58,24 +58,24 @@ bool clean_leaf(Leaf& leaf, const ActiveBox& box, Mended& mended) {
     for (uint32_t v = 0; v < 512; ++v) {
         const ivec3 at = leaf.origin + voxel(v);
         float& value = leaf.values[v];
-        value = inside || contains(box, at, at) ? cleaned(value, 1, mended) : 0.0f;
+        value = inside || contains(box, at, at) ? cleaned(value, 1, corrections) : 0.0f;
         any = any || value != 0;
     }
     return any;
 }
 
-void clean_leaves(Leaves& leaves, const ActiveBox& box, Mended& mended) {
+void clean_leaves(Leaves& leaves, const ActiveBox& box, Corrections& corrections) {
     std::vector<uint8_t> keep(leaves.size());
     std::atomic<uint64_t> non_finite = 0, negative = 0;
     parallel_ranges(static_cast<int64_t>(leaves.size()), 256, [&](int64_t begin, int64_t end) {
-        Mended local;
+        Corrections local;
         for (int64_t i = begin; i < end; ++i) {
             const auto n = static_cast<size_t>(i);
             keep[n] = clean_leaf(leaves[n], box, local);
         }
         non_finite += local.non_finite, negative += local.negative;
     });
-    mended.non_finite += non_finite, mended.negative += negative;
+    corrections.non_finite += non_finite, corrections.negative += negative;
 
     size_t kept = 0;
     for (size_t n = 0; n < leaves.size(); ++n) {
@@ -88,11 +88,12 @@ void clean_leaves(Leaves& leaves, const ActiveBox& box, Mended& mended) {
 }
 
 // Appends the parts of tiles inside the active box that contain fog.
-void append_tiles(const std::vector<Tile>& from, const ActiveBox& box, std::vector<Tile>& to, Mended& mended) {
+void append_tiles(const std::vector<Tile>& from, const ActiveBox& box, std::vector<Tile>& to,
+                  Corrections& corrections) {
     for (Tile tile : from) {
         tile.low = glm::max(tile.low, box.low), tile.high = glm::min(tile.high, box.high);
         if (glm::any(glm::lessThan(tile.high, tile.low))) continue;
-        tile.value = cleaned(tile.value, voxel_count(tile), mended);
+        tile.value = cleaned(tile.value, voxel_count(tile), corrections);
         if (tile.value != 0) to.push_back(tile);
     }
 }
@@ -141,14 +142,14 @@ void make_fog(DecodedTree tree, SparseVolume& volume, VdbReadReport& report, con
     report.background = std::isfinite(tree.background) ? tree.background : 0.0f;
     if (box.empty()) return;
 
-    Mended mended;
+    Corrections corrections;
     std::vector<VoxelMask>().swap(tree.active);
     volume.leaves = std::move(tree.leaves);
-    clean_leaves(volume.leaves, box, mended);
-    append_tiles(tree.active_tiles, box, volume.tiles, mended);
-    append_tiles(tree.inactive_tiles, box, volume.tiles, mended);
-    if (report.background != 0) append_tiles(background_tiles(tree, box, where), box, volume.tiles, mended);
-    report.non_finite = mended.non_finite, report.negative = mended.negative;
+    clean_leaves(volume.leaves, box, corrections);
+    append_tiles(tree.active_tiles, box, volume.tiles, corrections);
+    append_tiles(tree.inactive_tiles, box, volume.tiles, corrections);
+    if (report.background != 0) append_tiles(background_tiles(tree, box, where), box, volume.tiles, corrections);
+    report.non_finite = corrections.non_finite, report.negative = corrections.negative;
 }
 
 void apply(const ValueMap& map, DecodedTree& tree) {
@@ -205,7 +206,7 @@ void make_plain(DecodedTree tree, SparseVolume& volume) {
     volume.leaves = std::move(tree.leaves), volume.tiles = std::move(tree.active_tiles);
 }
 
-DecodedTree active_share(DecodedTree tree) {
+DecodedTree active_mask(DecodedTree tree) {
     for (size_t n = 0; n < tree.leaves.size(); ++n)
         for (uint32_t v = 0; v < 512; ++v)
             tree.leaves[n].values[v] = static_cast<float>(tree.active[n][v / 64] >> (v % 64) & 1);

@@ -31,7 +31,7 @@ void keep_finite(DecodedTree& tree, VdbReadReport& report);
 void make_plain(DecodedTree tree, SparseVolume& volume);
 
 // 1 at active voxels, 0 elsewhere.
-DecodedTree active_share(DecodedTree tree);
+DecodedTree active_mask(DecodedTree tree);
 
 // Minimum, maximum and mean of the finite active values, and the number of nonfinite and negative ones.
 void add_statistics(const DecodedTree& tree, VdbGridInfo& info);

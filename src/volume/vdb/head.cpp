@@ -59,11 +59,11 @@ void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::st
     write_value(stream, static_cast<int32_t>(grids));
 }
 
-void set_identity(std::string& head, std::string digits) {
+void set_uuid(std::string& head, std::string digits) {
     head.replace(uuid_begin, uuid_bytes, uuid_of(std::move(digits)));
 }
 
-bool has_identity_of_content(std::string_view file) {
+bool has_content_uuid(std::string_view file) {
     if (file.size() < uuid_begin + uuid_bytes) return false;
     const std::string_view pieces[] = {file.substr(0, uuid_begin), nought, file.substr(uuid_begin + uuid_bytes)};
     return file.substr(uuid_begin, uuid_bytes) == uuid_of(content_hash(pieces));

@@ -10,10 +10,10 @@ namespace tyndall {
 void write_head(std::ostream& stream, const VdbMetadata& metadata, const std::string& creator, size_t grids);
 
 // Sets the file's UUID from 32 hex digits.
-void set_identity(std::string& head, std::string digits);
+void set_uuid(std::string& head, std::string digits);
 
 // True if the UUID of a complete file is the hash of all its other bytes, as in files written by this program.
-bool has_identity_of_content(std::string_view file);
+bool has_content_uuid(std::string_view file);
 
 template<class T> void write_value(std::ostream& stream, T value) {
     stream.write(reinterpret_cast<const char*>(&value), sizeof value);

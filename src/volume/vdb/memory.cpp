@@ -14,7 +14,7 @@ namespace tyndall {
 namespace {
 // Memory available to this process: the minimum of the machine's, its cgroup's and its own limit, minus an eighth.
 uint64_t available_memory() {
-    uint64_t most = machine_memory();
+    uint64_t most = physical_memory();
     rlimit limit{};
     if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
         most = std::min<uint64_t>(most, limit.rlim_cur);

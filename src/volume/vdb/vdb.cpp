@@ -58,7 +58,8 @@ VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const Vdb
     VdbGridInfo info;
     info.name = grid.name, info.type = grid.type, info.grid_class = grid.grid_class;
     info.key = key_of(directory, grid), info.role = role_of(grid);
-    info.why_not = obstacle(grid), info.usable = info.why_not.empty(), info.is_fog = fog_of(directory) == &grid;
+    info.why_not = grid_problem(grid), info.usable = info.why_not.empty(),
+    info.is_fog = default_grid(directory) == &grid;
     info.index_to_world = grid.index_to_world;
     for (int axis = 0; axis < 3; ++axis)
         info.voxel_size[axis] = static_cast<float>(glm::length(dvec3(grid.index_to_world[axis])));
@@ -139,7 +140,7 @@ ColorVolume read_color(const std::filesystem::path& path, std::span<const std::s
         keep_active(tree);
         if (most < infinity) limit(tree, most, mended);
         VdbReadReport nothing;
-        if (c == 0) color.there = cleaned_volume(active_share(tree), grid, file, nothing);
+        if (c == 0) color.coverage = cleaned_volume(active_mask(tree), grid, file, nothing);
         color.channels.push_back(cleaned_volume(std::move(tree), grid, file, mended));
     }
     if (report) *report = mended;
@@ -171,7 +172,7 @@ VelocityVolume read_velocity(const std::filesystem::path& path, std::span<const 
         DecodedTree tree = load_tree(file, directory, grid, counts, vectors ? c : 0);
         keep_finite(tree, mended);
         apply(map, tree);
-        if (c == 0 || !vectors) velocity.known.push_back(plain_volume(active_share(tree), grid));
+        if (c == 0 || !vectors) velocity.known.push_back(plain_volume(active_mask(tree), grid));
         SparseVolume& component = velocity.components[static_cast<size_t>(c)];
         component = plain_volume(std::move(tree), grid);
         mended.empty &= component.empty();
@@ -232,7 +233,7 @@ VdbMetadata vdb_metadata(const std::filesystem::path& path) {
 }
 
 bool is_as_written(const std::filesystem::path& path) {
-    return has_identity_of_content(read_file(path, std::numeric_limits<uint64_t>::max()));
+    return has_content_uuid(read_file(path, std::numeric_limits<uint64_t>::max()));
 }
 
 VdbImage::VdbImage(const VdbContent& content, const VdbWriteOptions& options, const std::string& where)

@@ -112,8 +112,8 @@ SparseVolume read_vdb(const std::filesystem::path& file, const std::string& grid
 
 // A color from a vector grid, three scalar grids, or one scalar grid for all channels.
 struct ColorVolume {
-    std::vector<SparseVolume> channels; // three, or one for all; 0 where `there` is 0
-    SparseVolume there;                 // 1 at active voxels
+    std::vector<SparseVolume> channels; // three, or one for all; 0 where `coverage` is 0
+    SparseVolume coverage;              // 1 at active voxels
 };
 // `grids`: one name or three. A name that does not exist stands for name.x, name.y and name.z if these do. Values above
 // `most` are clamped and counted. Throws Error like read_vdb().

@@ -59,7 +59,7 @@ Everything read(const std::filesystem::path& path) {
 }
 
 TEST(CacheFile, GivesBackEveryField) {
-    const Scratch scratch;
+    const TempFolder scratch;
     write(scratch / "a.cache", something());
     EXPECT_EQ(open_cache_file(scratch / "a.cache", made_from)->seconds, 1.5);
     const Everything thing = read(scratch / "a.cache"), wanted = something();
@@ -75,14 +75,14 @@ TEST(CacheFile, GivesBackEveryField) {
 }
 
 TEST(CacheFile, TheSameThingHasTheSameBytes) {
-    const Scratch scratch;
+    const TempFolder scratch;
     write(scratch / "a.cache", something());
     write(scratch / "b.cache", something());
     EXPECT_EQ(bytes_of(scratch / "a.cache"), bytes_of(scratch / "b.cache"));
 }
 
 TEST(CacheFile, SharedArraysOutliveTheFilesName) {
-    const Scratch scratch;
+    const TempFolder scratch;
     write(scratch / "a.cache", something());
     const Everything thing = read(scratch / "a.cache");
     std::filesystem::remove(scratch / "a.cache");
@@ -90,7 +90,7 @@ TEST(CacheFile, SharedArraysOutliveTheFilesName) {
 }
 
 TEST(CacheFile, RefusesEveryByteThatChanged) {
-    const Scratch scratch;
+    const TempFolder scratch;
     write(scratch / "a.cache", something());
     const std::string good = bytes_of(scratch / "a.cache");
     for (size_t at = 0; at < good.size(); ++at) {
@@ -98,32 +98,32 @@ TEST(CacheFile, RefusesEveryByteThatChanged) {
         bad[at] ^= 16;
         scratch.put("a.cache", bad);
         EXPECT_THAT(
-            error_text(ExitCode::refused, [&] { check_body(*open_cache_file(scratch / "a.cache", made_from)); }),
+            error_message(ExitCode::refused, [&] { check_body(*open_cache_file(scratch / "a.cache", made_from)); }),
             HasSubstr("damaged"))
             << at;
     }
 }
 
 TEST(CacheFile, RefusesOneThatIsCutOrLonger) {
-    const Scratch scratch;
+    const TempFolder scratch;
     write(scratch / "a.cache", something());
     const std::string good = bytes_of(scratch / "a.cache");
     for (const std::string& bad :
          {std::string(), good.substr(0, 60), good.substr(0, 128), good.substr(0, good.size() - 1), good + "x"}) {
         scratch.put("a.cache", bad);
-        EXPECT_THAT(error_text(ExitCode::refused, [&] { open_cache_file(scratch / "a.cache", made_from); }),
+        EXPECT_THAT(error_message(ExitCode::refused, [&] { open_cache_file(scratch / "a.cache", made_from); }),
                     HasSubstr("a.cache"))
             << bad.size();
     }
-    error_text(ExitCode::unreadable, [&] { open_cache_file(scratch / "none.cache", made_from); });
-    error_text(ExitCode::unreadable, [&] { open_cache_file(scratch.path(), made_from); });
+    error_message(ExitCode::unreadable, [&] { open_cache_file(scratch / "none.cache", made_from); });
+    error_message(ExitCode::unreadable, [&] { open_cache_file(scratch.path(), made_from); });
 }
 
 TEST(CacheFile, RefusesAnotherThing) {
-    const Scratch scratch;
+    const TempFolder scratch;
     write(scratch / "a.cache", something());
     const std::string other(32, 'b');
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { open_cache_file(scratch / "a.cache", other); }),
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { open_cache_file(scratch / "a.cache", other); }),
                 HasSubstr("does not match its name"));
 
     // A body that hashes well, but says more elements than there are, or has other fields than the reader asks for.
@@ -133,13 +133,13 @@ TEST(CacheFile, RefusesAnotherThing) {
     std::vector<double> values;
     std::string text;
     CacheReader reader(open_cache_file(scratch / "b.cache", made_from)), again = reader, unread = reader;
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { reader(values); }), HasSubstr("its data ends early"));
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { again(text); }), HasSubstr("its data ends early"));
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { unread.finish(); }), HasSubstr("extra data at its end"));
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { reader(values); }), HasSubstr("its data ends early"));
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { again(text); }), HasSubstr("its data ends early"));
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { unread.finish(); }), HasSubstr("extra data at its end"));
 }
 
 TEST(MappedFile, TellsAFileThatChanged) {
-    const Scratch scratch;
+    const TempFolder scratch;
     scratch.put("a", "some bytes");
     const MappedFile file(scratch / "a");
     EXPECT_EQ(file.bytes(), "some bytes");
@@ -152,18 +152,18 @@ TEST(MappedFile, TellsAFileThatChanged) {
     const MappedFile other(scratch / "b");
     const timespec times[2] = {{1, 0}, {1, 0}};
     ASSERT_EQ(utimensat(AT_FDCWD, scratch.file("b").c_str(), times, 0), 0);
-    EXPECT_THAT(error_text(ExitCode::unreadable, [&] { other.check_unchanged(); }), HasSubstr("was changed"));
+    EXPECT_THAT(error_message(ExitCode::unreadable, [&] { other.check_unchanged(); }), HasSubstr("was changed"));
 }
 
 TEST(MappedFile, HoldsNothingOfAnEmptyFile) {
-    const Scratch scratch;
+    const TempFolder scratch;
     scratch.put("a", "");
     EXPECT_EQ(MappedFile(scratch / "a").bytes(), "");
 }
 
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST(MappedFileDeathTest, ACutFileEndsTheProcessWithItsName) {
-    const Scratch scratch;
+    const TempFolder scratch;
     scratch.put("first", "x");
     const std::string big(1 << 20, 'x');
     scratch.put("second", big);
@@ -178,7 +178,7 @@ TEST(MappedFileDeathTest, ACutFileEndsTheProcessWithItsName) {
 }
 
 TEST(MappedFileDeathTest, OtherFaultsStayFaults) {
-    const Scratch scratch;
+    const TempFolder scratch;
     scratch.put("a", "x");
     const MappedFile file(scratch / "a");
     EXPECT_EXIT(raise(SIGBUS), testing::KilledBySignal(SIGBUS), "");

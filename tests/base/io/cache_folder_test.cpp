@@ -17,7 +17,7 @@ struct Heavy {
 };
 template<class Visit> void fields(Heavy& thing, Visit& visit) { visit(thing.values); }
 
-std::shared_ptr<CacheFolder> to_write(const Scratch& scratch, uint64_t room = 1 << 20) {
+std::shared_ptr<CacheFolder> to_write(const TempFolder& scratch, uint64_t room = 1 << 20) {
     auto folder = std::make_shared<CacheFolder>(scratch.path());
     folder->writes = true, folder->room = room;
     return folder;
@@ -36,11 +36,11 @@ struct Maker {
 };
 
 float ask(CacheFolder* folder, Maker& maker, const std::string& content = "x") {
-    return found_or_made<Heavy>(folder, "heavy thing", content, [&] { return maker(); }).values[0];
+    return load_or_build<Heavy>(folder, "heavy thing", content, [&] { return maker(); }).values[0];
 }
 
 TEST(CacheFolder, ThingsAreMadeOnceAndFound) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto folder = to_write(scratch);
     Maker maker;
     EXPECT_EQ(ask(folder.get(), maker), 1);
@@ -57,7 +57,7 @@ TEST(CacheFolder, ThingsAreMadeOnceAndFound) {
 }
 
 TEST(CacheFolder, AnotherBuildFindsNothing) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto folder = to_write(scratch), other = to_read(*folder);
     Maker maker;
     ask(folder.get(), maker);
@@ -66,12 +66,12 @@ TEST(CacheFolder, AnotherBuildFindsNothing) {
 }
 
 TEST(CacheFolder, WithoutFolderOrContentThingsAreMade) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto folder = to_write(scratch);
     Maker maker;
     EXPECT_EQ(ask(nullptr, maker), 1);
     EXPECT_EQ(ask(folder.get(), maker, ""), 2);
-    EXPECT_EQ(found_or_made<int>(folder.get(), "number", "x", [] { return 5; }), 5); // it has no fields
+    EXPECT_EQ(load_or_build<int>(folder.get(), "number", "x", [] { return 5; }), 5); // it has no fields
     ASSERT_THAT(folder->costs, SizeIs(2));
     EXPECT_EQ(folder->costs[1].what, "number");
     EXPECT_EQ(folder->costs[1].kind, CostKind::rebuilt);
@@ -79,7 +79,7 @@ TEST(CacheFolder, WithoutFolderOrContentThingsAreMade) {
 }
 
 TEST(CacheFolder, WhatDoesNotFitIsNotWritten) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto folder = to_write(scratch, 300);
     Maker maker;
     ask(folder.get(), maker, "x"), ask(folder.get(), maker, "y");
@@ -89,12 +89,14 @@ TEST(CacheFolder, WhatDoesNotFitIsNotWritten) {
 }
 
 TEST(CacheFolder, FilesThatAreGoneCutOrOthersAreNamed) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto written = to_write(scratch);
     Maker maker;
     ask(written.get(), maker);
     const std::string name = scratch.names()[0], good = bytes_of(scratch / name);
-    const auto text_of = [&](ExitCode code) { return error_text(code, [&] { ask(to_read(*written).get(), maker); }); };
+    const auto text_of = [&](ExitCode code) {
+        return error_message(code, [&] { ask(to_read(*written).get(), maker); });
+    };
     scratch.put(name, good.substr(0, 20));
     EXPECT_THAT(text_of(ExitCode::unreadable),
                 testing::AllOf(HasSubstr(name), HasSubstr("is truncated or was replaced: has 20 of")));
@@ -102,7 +104,7 @@ TEST(CacheFolder, FilesThatAreGoneCutOrOthersAreNamed) {
     bad.back() ^= 1;
     scratch.put(name, bad); // its time stamp tells
     EXPECT_THAT(text_of(ExitCode::refused), HasSubstr("damaged"));
-    error_text(ExitCode::refused, [&] { check_cache_file(*written, name, written->files.at(name)); });
+    error_message(ExitCode::refused, [&] { check_cache_file(*written, name, written->files.at(name)); });
     Heavy other{{7, 7, 7}};
     CacheWriter writer;
     fields(other, writer);
@@ -117,7 +119,7 @@ TEST(CacheFolder, FilesThatAreGoneCutOrOthersAreNamed) {
 }
 
 TEST(CacheFolder, CopiesAreMadeOnce) {
-    const Scratch scratch, local;
+    const TempFolder scratch, local;
     const auto written = to_write(scratch);
     Maker maker;
     ask(written.get(), maker);
@@ -134,12 +136,12 @@ TEST(CacheFolder, CopiesAreMadeOnce) {
     bad.back() ^= 1;
     scratch.put(name, bad);
     std::filesystem::remove(local / name);
-    error_text(ExitCode::refused, [&] { ask(to_read(*written, local.path()).get(), maker); });
+    error_message(ExitCode::refused, [&] { ask(to_read(*written, local.path()).get(), maker); });
     EXPECT_THAT(local.names(), SizeIs(0));
 }
 
 TEST(CacheFolder, AMappedFileThatChangesIsTold) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto written = to_write(scratch);
     Maker maker;
     ask(written.get(), maker);
@@ -147,11 +149,11 @@ TEST(CacheFolder, AMappedFileThatChangesIsTold) {
     const auto kept = find_cache_file(*written, "heavy thing", made_from_hash(*written, "heavy thing", "x"));
     check_unchanged(*written);
     std::filesystem::last_write_time(scratch / name, std::filesystem::file_time_type());
-    EXPECT_THAT(error_text(ExitCode::unreadable, [&] { check_unchanged(*written); }), HasSubstr(name));
+    EXPECT_THAT(error_message(ExitCode::unreadable, [&] { check_unchanged(*written); }), HasSubstr(name));
 }
 
 TEST(FileHashes, AreWorkedOutOnce) {
-    const Scratch scratch;
+    const TempFolder scratch;
     scratch.put("a", "one");
     FileHashes files;
     const std::string first = file_hash(scratch / "a", files);
@@ -159,11 +161,11 @@ TEST(FileHashes, AreWorkedOutOnce) {
     EXPECT_EQ(file_hash(scratch / "a", files), first);
     FileHashes again;
     EXPECT_NE(file_hash(scratch / "a", again), first);
-    error_text(ExitCode::unreadable, [&] { file_hash(scratch / "b", again); });
+    error_message(ExitCode::unreadable, [&] { file_hash(scratch / "b", again); });
 }
 
 TEST(FileHashes, OnRecordStandForFilesThatKeepTheirStamps) {
-    const Scratch scratch;
+    const TempFolder scratch;
     scratch.put("a", "one");
     FileHashes files;
     const std::string hash = file_hash(scratch / "a", files);
@@ -175,7 +177,7 @@ TEST(FileHashes, OnRecordStandForFilesThatKeepTheirStamps) {
     const auto changed = std::filesystem::last_write_time(scratch / "a") + std::chrono::seconds(1);
     std::filesystem::last_write_time(scratch / "a", changed);
     later.known.clear();
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { file_hash(scratch / "a", later); }),
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { file_hash(scratch / "a", later); }),
                 testing::AllOf(HasSubstr("has changed since record"), HasSubstr("prepare again")));
     later.recorded.begin()->second.hash = hash;
     EXPECT_EQ(file_hash(scratch / "a", later), hash);

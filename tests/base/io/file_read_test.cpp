@@ -17,7 +17,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(FileRead, ReturnsEveryByteWithZerosAndLineEnds) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const std::string bytes("a\0b\r\n\xff\x1a", 7);
     EXPECT_EQ(read_file(scratch.put("f", bytes)), bytes);
     EXPECT_EQ(read_file(scratch.put("empty", "")), "");
@@ -28,23 +28,24 @@ TEST(FileRead, ReturnsEveryByteWithZerosAndLineEnds) {
 TEST(FileRead, ReadsFilesThatAnnounceNoSize) { EXPECT_THAT(read_file("/proc/self/status"), HasSubstr("Pid:")); }
 
 TEST(FileRead, RefusesMoreThanTheLimitAndTakesExactlyTheLimit) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto path = scratch.put("f", std::string(1000, 'x'));
     EXPECT_EQ(read_file(path, 1000).size(), 1000u);
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_file(path, 999); }), HasSubstr("larger than 999 bytes"));
-    EXPECT_THAT(error_text(ExitCode::refused, [] { read_file("/proc/self/status", 10); }), HasSubstr("larger than 10"));
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { read_file(path, 999); }), HasSubstr("larger than 999 bytes"));
+    EXPECT_THAT(error_message(ExitCode::refused, [] { read_file("/proc/self/status", 10); }),
+                HasSubstr("larger than 10"));
 }
 
 TEST(FileRead, RefusesAHugeSparseFileWithoutReadingIt) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto path = scratch.put("sparse", "");
     ASSERT_EQ(truncate(path.c_str(), off_t{20} << 30), 0);
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_file(path); }), HasSubstr("larger than 67108864 bytes"));
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { read_file(path); }), HasSubstr("larger than 67108864 bytes"));
     EXPECT_EQ(check_readable(path), uint64_t{20} << 30);
 }
 
 TEST(FileRead, NamesWhatIsNoFile) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto pipe = scratch / "pipe", socket_path = scratch / "socket";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     const int descriptor = socket(AF_UNIX, SOCK_STREAM, 0);
@@ -56,8 +57,8 @@ TEST(FileRead, NamesWhatIsNoFile) {
     std::filesystem::create_symlink("nowhere", scratch / "dangling");
 
     const auto text = [](const std::filesystem::path& path) {
-        const std::string from_check = error_text(ExitCode::unreadable, [&] { check_readable(path); });
-        EXPECT_EQ(error_text(ExitCode::unreadable, [&] { read_file(path); }), from_check);
+        const std::string from_check = error_message(ExitCode::unreadable, [&] { check_readable(path); });
+        EXPECT_EQ(error_message(ExitCode::unreadable, [&] { read_file(path); }), from_check);
         EXPECT_THAT(from_check, testing::StartsWith(path.string() + ": "));
         return from_check;
     };
@@ -71,13 +72,13 @@ TEST(FileRead, NamesWhatIsNoFile) {
 }
 
 TEST(FileRead, SaysWhenPermissionIsMissing) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto path = scratch.put("secret", "x");
     ASSERT_EQ(chmod(path.c_str(), 0), 0);
     // Root may read everything, so it reads as nobody.
     const bool root = geteuid() == 0;
     ASSERT_TRUE(!root || (chmod(scratch.path().c_str(), 0755) == 0 && seteuid(65534) == 0));
-    const std::string text = error_text(ExitCode::unreadable, [&] { read_file(path); });
+    const std::string text = error_message(ExitCode::unreadable, [&] { read_file(path); });
     ASSERT_TRUE(!root || seteuid(0) == 0);
     EXPECT_THAT(text, HasSubstr("Permission denied"));
 }

@@ -22,7 +22,7 @@ std::vector<int> shown(const FileSequence& sequence, int first, int last, Missin
 
 class Sequence : public ::testing::Test {
 protected:
-    const Scratch scratch;
+    const TempFolder scratch;
 
     FileSequence made(const std::vector<std::string>& names, const std::string& pattern) {
         for (const std::string& name : names) scratch.put(name, "x");

@@ -25,7 +25,7 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 TEST(FileWrite, WritesEveryByteAndNothingElse) {
-    const Scratch scratch;
+    const TempFolder scratch;
     std::string bytes(3 << 20, '\0');
     for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 2654435761u >> 13);
     write_file_atomically(scratch / "f", bytes);
@@ -38,7 +38,7 @@ TEST(FileWrite, WritesEveryByteAndNothingElse) {
 }
 
 TEST(FileWrite, GivesTheRightsOfAnyNewFile) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const mode_t before = umask(027);
     write_file_atomically(scratch / "f", "x");
     umask(before);
@@ -48,7 +48,7 @@ TEST(FileWrite, GivesTheRightsOfAnyNewFile) {
 }
 
 TEST(FileWrite, WorksInTheCurrentDirectory) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto before = std::filesystem::current_path();
     std::filesystem::current_path(scratch.path());
     check_output("plain.txt");
@@ -58,20 +58,20 @@ TEST(FileWrite, WorksInTheCurrentDirectory) {
 }
 
 TEST(FileWrite, TakesTheLongestNameThereIs) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const std::string longest(255, 'n');
     check_output(scratch / longest);
     write_file_atomically(scratch / longest, "x");
     EXPECT_EQ(bytes_of(scratch / longest), "x");
     for (const auto& write :
          {check_output, +[](const std::filesystem::path& path) { write_file_atomically(path, "x"); }})
-        EXPECT_THAT(error_text(ExitCode::unwritable, [&] { write(scratch / std::string(256, 'n')); }),
+        EXPECT_THAT(error_message(ExitCode::unwritable, [&] { write(scratch / std::string(256, 'n')); }),
                     HasSubstr("too long"));
     EXPECT_THAT(scratch.names(), SizeIs(1));
 }
 
 TEST(FileWrite, KeepsASymbolicLinkAndReplacesItsTarget) {
-    const Scratch scratch;
+    const TempFolder scratch;
     std::filesystem::create_directory(scratch / "real");
     std::filesystem::create_symlink("real/target", scratch / "link");
     scratch.put("real/target", "old");
@@ -81,7 +81,7 @@ TEST(FileWrite, KeepsASymbolicLinkAndReplacesItsTarget) {
 }
 
 TEST(FileWrite, RefusesNamesThatARenameWouldDestroy) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto pipe = scratch / "pipe";
     ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
     std::filesystem::create_directory(scratch / "directory");
@@ -89,7 +89,7 @@ TEST(FileWrite, RefusesNamesThatARenameWouldDestroy) {
     for (const auto& write :
          {check_output, +[](const std::filesystem::path& path) { write_file_atomically(path, "x"); }}) {
         const auto text = [&](const std::filesystem::path& path) {
-            return error_text(ExitCode::unwritable, [&] { write(path); });
+            return error_message(ExitCode::unwritable, [&] { write(path); });
         };
         EXPECT_THAT(text(scratch / "directory"), HasSubstr("is a directory"));
         EXPECT_THAT(text(pipe), HasSubstr("device or pipe"));
@@ -106,20 +106,21 @@ TEST(FileWrite, RefusesNamesThatARenameWouldDestroy) {
 }
 
 TEST(FileWrite, MissingDirectoryIsMadeByTheCheckOnly) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto path = scratch / "a/b/c.exr";
-    EXPECT_THAT(error_text(ExitCode::unwritable, [&] { write_file_atomically(path, "x"); }), HasSubstr("No such file"));
+    EXPECT_THAT(error_message(ExitCode::unwritable, [&] { write_file_atomically(path, "x"); }),
+                HasSubstr("No such file"));
     check_output(path);
     EXPECT_TRUE(std::filesystem::is_empty(scratch / "a/b"));
     write_file_atomically(path, "x");
     EXPECT_EQ(bytes_of(path), "x");
     scratch.put("file", "");
-    EXPECT_THAT(error_text(ExitCode::unwritable, [&] { check_output(scratch / "file/below.exr"); }),
+    EXPECT_THAT(error_message(ExitCode::unwritable, [&] { check_output(scratch / "file/below.exr"); }),
                 HasSubstr("cannot create its directory: Not a directory"));
 }
 
 TEST(FileWrite, CheckLeavesAnExistingFileAlone) {
-    const Scratch scratch;
+    const TempFolder scratch;
     check_output(scratch.put("f", "kept"));
     EXPECT_EQ(bytes_of(scratch / "f"), "kept");
     EXPECT_THAT(scratch.names(), ElementsAre("f"));
@@ -127,7 +128,7 @@ TEST(FileWrite, CheckLeavesAnExistingFileAlone) {
 
 // A full disk as the kernel reports it in the middle of a write: the file size limit of the process.
 TEST(FileWrite, AWriteThatFailsHalfwayLeavesTheOldFileAndNoTemporary) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto path = scratch.put("f", "old");
     rlimit before;
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -135,7 +136,7 @@ TEST(FileWrite, AWriteThatFailsHalfwayLeavesTheOldFileAndNoTemporary) {
     const rlimit small{100000, before.rlim_max};
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
     const std::string text =
-        error_text(ExitCode::unwritable, [&] { write_file_atomically(path, std::string(100001, 'x')); });
+        error_message(ExitCode::unwritable, [&] { write_file_atomically(path, std::string(100001, 'x')); });
     write_file_atomically(scratch / "fits", std::string(100000, 'x'));
     setrlimit(RLIMIT_FSIZE, &before);
     signal(SIGXFSZ, handler);
@@ -146,14 +147,14 @@ TEST(FileWrite, AWriteThatFailsHalfwayLeavesTheOldFileAndNoTemporary) {
 }
 
 TEST(FileWrite, AFullDiskLeavesTheOldFileAndNoTemporary) {
-    const Scratch scratch;
+    const TempFolder scratch;
     std::filesystem::create_directory(scratch / "disk");
     const auto path = scratch / "disk/f";
     if (mount("tyndall_test", (scratch / "disk").c_str(), "tmpfs", 0, "size=64k") != 0)
         GTEST_SKIP() << "no right to mount a small file system";
     write_file_atomically(path, "old");
     const std::string text =
-        error_text(ExitCode::unwritable, [&] { write_file_atomically(path, std::string(1 << 20, 'x')); });
+        error_message(ExitCode::unwritable, [&] { write_file_atomically(path, std::string(1 << 20, 'x')); });
     const std::string left = bytes_of(path);
     const auto files = std::distance(std::filesystem::directory_iterator(scratch / "disk"), {});
     ASSERT_EQ(umount((scratch / "disk").c_str()), 0);
@@ -163,12 +164,12 @@ TEST(FileWrite, AFullDiskLeavesTheOldFileAndNoTemporary) {
 }
 
 TEST(FileWrite, AnUnwritableDirectoryIsFoundByTheCheck) {
-    const std::string text = error_text(ExitCode::unwritable, [] { check_output("/proc/tyndall.exr"); });
+    const std::string text = error_message(ExitCode::unwritable, [] { check_output("/proc/tyndall.exr"); });
     EXPECT_THAT(text, testing::StartsWith("/proc/tyndall.exr: cannot create a file in its directory: "));
 }
 
 TEST(FileWrite, AReaderNeverSeesHalfAFile) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto path = scratch / "f";
     const std::string a(200000, 'a'), b(300000, 'b');
     write_file_atomically(path, a);
@@ -207,7 +208,7 @@ void age(const std::filesystem::path& path, long hours) {
 }
 
 TEST(Sweep, RemovesWhatAKilledRunLeftAndOnlyThat) {
-    const Scratch scratch;
+    const TempFolder scratch;
     run_and_kill([&] {
         Temporary temporary(scratch / "frame.0001.exr");
         temporary.write("half", 4);
@@ -235,7 +236,7 @@ TEST(Sweep, RemovesWhatAKilledRunLeftAndOnlyThat) {
 }
 
 TEST(Sweep, LeavesARunningProcessAloneForADay) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const Temporary temporary(scratch / "f");
     const std::string name = scratch.names().at(0);
     sweep_temporaries(scratch.path());
@@ -249,7 +250,7 @@ TEST(Sweep, LeavesARunningProcessAloneForADay) {
 }
 
 TEST(Sweep, JudgesProcessesOfItsOwnNamespaceOnly) {
-    const Scratch scratch;
+    const TempFolder scratch;
     run_and_kill([&] {
         const Temporary temporary(scratch / "f");
         raise(SIGKILL);

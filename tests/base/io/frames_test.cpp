@@ -87,7 +87,7 @@ const Illegal illegal_ranges[] = {{"", "column 1: expected a frame number"},
 
 TEST(Frames, IllegalRangesAreRefusedAtTheirColumn) {
     for (const auto& [text, complaint] : illegal_ranges)
-        EXPECT_THAT(error_text(ExitCode::usage, [&, range = text] { parse_frames(range); }), HasSubstr(complaint))
+        EXPECT_THAT(error_message(ExitCode::usage, [&, range = text] { parse_frames(range); }), HasSubstr(complaint))
             << text;
 }
 
@@ -98,8 +98,8 @@ TEST(Frames, AMillionIsTheLimit) {
 }
 
 TEST(Frames, ForeignBytesInTheComplaintAreHarmless) {
-    EXPECT_THAT(error_text(ExitCode::usage, [] { parse_frames("1\x1b[31m"); }), HasSubstr("unexpected '\\x1b'"));
-    error_text(ExitCode::usage, [] { parse_frames(std::string(100000, 'x')); });
+    EXPECT_THAT(error_message(ExitCode::usage, [] { parse_frames("1\x1b[31m"); }), HasSubstr("unexpected '\\x1b'"));
+    error_message(ExitCode::usage, [] { parse_frames(std::string(100000, 'x')); });
 }
 
 TEST(Frames, ShortestSpelling) {
@@ -198,18 +198,18 @@ TEST(FramePattern, WithoutAToken) {
 TEST(FramePattern, AnythingThatPrintfMightTakeOtherwiseIsRefused) {
     for (const char* pattern : {"a.%s.exr", "a.%n", "%", "a%%b", "%4d", "%0d", "%00d", "%ld", "%x", "%+d", "%-4d",
                                 "%04", "%1$d", "%*d", "50% fog.exr"})
-        EXPECT_THAT(error_text(ExitCode::usage, [&] { has_frame_token(pattern); }), HasSubstr("only %d and %04d"))
+        EXPECT_THAT(error_message(ExitCode::usage, [&] { has_frame_token(pattern); }), HasSubstr("only %d and %04d"))
             << pattern;
     for (const char* pattern : {"####.##", "%04d.####", "$F.$F", "$F4_%d", "#/#", "@@.@@", "<F>#"})
-        EXPECT_THAT(error_text(ExitCode::usage, [&] { frame_name(pattern, 1); }),
+        EXPECT_THAT(error_message(ExitCode::usage, [&] { frame_name(pattern, 1); }),
                     HasSubstr("already has a frame number"))
             << pattern;
     for (const char* pattern : {"#############", "%013d", "$F13", "@@@@@@@@@@@@@", "<F13>", "%099999999999999999999d"})
-        EXPECT_THAT(error_text(ExitCode::usage, [&] { frame_name(pattern, 1); }), HasSubstr("at most 12 digits"))
+        EXPECT_THAT(error_message(ExitCode::usage, [&] { frame_name(pattern, 1); }), HasSubstr("at most 12 digits"))
             << pattern;
-    EXPECT_THAT(error_text(ExitCode::usage, [] { frame_name("$F0", 1); }), HasSubstr("width from 1 to 12"));
-    EXPECT_THAT(error_text(ExitCode::usage, [] { frame_name("<F0>", 1); }), HasSubstr("width from 1 to 12"));
-    EXPECT_THAT(error_text(ExitCode::usage, [] { frame_name("abc%s", 1); }), HasSubstr("column 4"));
+    EXPECT_THAT(error_message(ExitCode::usage, [] { frame_name("$F0", 1); }), HasSubstr("width from 1 to 12"));
+    EXPECT_THAT(error_message(ExitCode::usage, [] { frame_name("<F0>", 1); }), HasSubstr("width from 1 to 12"));
+    EXPECT_THAT(error_message(ExitCode::usage, [] { frame_name("abc%s", 1); }), HasSubstr("column 4"));
 }
 }
 }

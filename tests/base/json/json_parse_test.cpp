@@ -13,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string refusal(const std::string& text) {
-    return error_text(ExitCode::refused, [&] { parse_json(text, "a.json"); });
+    return error_message(ExitCode::refused, [&] { parse_json(text, "a.json"); });
 }
 
 TEST(JsonParse, ReadsEveryKindOfValueInOrder) {

@@ -142,21 +142,21 @@ TEST(JsonSchema, SaysWhereAndWhatWasExpected) {
     for (const auto& [member, complaint] : cases) {
         SCOPED_TRACE(member);
         const Json document = parse_json(std::string(R"({"version": 1, )") + member + "}", "a.json");
-        EXPECT_THAT(error_text(ExitCode::refused, [&] { check_schema(document, schema, "a.json"); }),
+        EXPECT_THAT(error_message(ExitCode::refused, [&] { check_schema(document, schema, "a.json"); }),
                     HasSubstr(std::string("a.json: ") +
                               (complaint[0] == '/' ? "" : "/name: \"\xc3\xa4\xc3\xa4\xc3\xa4\" ") + complaint));
     }
     for (const auto& [text, complaint] : {std::pair{"{}", R"(a.json: missing key "version")"},
                                           std::pair{"[]", "a.json: expected an object, got an array"},
                                           std::pair{R"({"version": 2})", "a.json: /version: expected 1; got 2"}})
-        EXPECT_EQ(error_text(ExitCode::refused,
-                             [&, json = text] { check_schema(parse_json(json, "a.json"), schema, "a.json"); }),
+        EXPECT_EQ(error_message(ExitCode::refused,
+                                [&, json = text] { check_schema(parse_json(json, "a.json"), schema, "a.json"); }),
                   complaint);
 }
 
 TEST(JsonSchema, HugeStringsAndKeysAreRefusedBeforeAnyPatternSeesThem) {
     const auto refusal = [](const std::string& text) {
-        return error_text(ExitCode::refused, [&] { check_schema(parse_json(text, "a.json"), schema, "a.json"); });
+        return error_message(ExitCode::refused, [&] { check_schema(parse_json(text, "a.json"), schema, "a.json"); });
     };
     const std::string huge(5000000, 'a');
     EXPECT_THAT(refusal(R"({"version": 1, "name": ")" + huge + "\"}"),
@@ -169,14 +169,14 @@ TEST(JsonSchema, HugeStringsAndKeysAreRefusedBeforeAnyPatternSeesThem) {
 }
 
 TEST(JsonSchema, FileIsReadParsedAndChecked) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto read = [&](const std::filesystem::path& path) { return [path] { read_json(path, schema); }; };
     EXPECT_EQ(read_json(scratch.put("good.json", R"({"version": 1, "both": 6})"), schema).number_or("both", 0), 6);
-    EXPECT_THAT(error_text(ExitCode::unreadable, read(scratch / "absent.json")),
+    EXPECT_THAT(error_message(ExitCode::unreadable, read(scratch / "absent.json")),
                 HasSubstr("absent.json: no such file"));
-    EXPECT_THAT(error_text(ExitCode::refused, read(scratch.put("bad.json", "{"))),
+    EXPECT_THAT(error_message(ExitCode::refused, read(scratch.put("bad.json", "{"))),
                 HasSubstr("bad.json: line 1, column 2: "));
-    EXPECT_THAT(error_text(ExitCode::refused, read(scratch.put("old.json", R"({"version": 0})"))),
+    EXPECT_THAT(error_message(ExitCode::refused, read(scratch.put("old.json", R"({"version": 0})"))),
                 HasSubstr("old.json: /version: expected 1"));
 }
 

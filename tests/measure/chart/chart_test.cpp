@@ -53,7 +53,7 @@ Chart small_chart() {
 }
 
 TEST(ChartErrors, TakeTheWorseOfPictureAndFogLight) {
-    const ReferenceMetrics reference_metrics = make_yardstick(exact_reference(2, 0.5f), false);
+    const ReferenceMetrics reference_metrics = make_metrics(exact_reference(2, 0.5f), false);
     const ChartErrors errors = chart_errors(reference_metrics, {flat(2.2f), flat(0.6f)});
     EXPECT_NEAR(errors.rmse, 0.1, 1e-6);
     EXPECT_NEAR(errors.inscatter_rmse, 0.2, 1e-6);
@@ -69,7 +69,7 @@ TEST(ChartErrors, DoNotCountTheNoiseOfTheReference) {
     // mean of the halves' noise times 0.1 (deviation 0.1 · 0.29 · √2) plus a product of both (0.29²), over all pixels.
     Reference reference = exact_reference(1, 1);
     for (uint32_t half = 0; half < 2; ++half) reference.halves[half].color = noisy(1, 0.5f, half + 1);
-    const ChartErrors errors = chart_errors(make_yardstick(reference, false), {flat(1.1f), flat(1)});
+    const ChartErrors errors = chart_errors(make_metrics(reference, false), {flat(1.1f), flat(1)});
     const double variance = 0.25 / 3;
     const double deviation = std::sqrt((0.01 * 2 * variance + variance * variance) / pixels); // of the square
     EXPECT_NEAR(errors.rmse * errors.rmse, 0.01, 4 * deviation);
@@ -79,7 +79,7 @@ TEST(ChartErrors, DoNotCountTheNoiseOfTheReference) {
 TEST(ChartErrors, LeaveOutWhatLightsHaveNoPartIn) {
     Reference reference = exact_reference(3, 1);
     reference.unlit[0] = reference.unlit[1] = {flat(2), flat(0.25f)};
-    const ReferenceMetrics reference_metrics = make_yardstick(reference, true);
+    const ReferenceMetrics reference_metrics = make_metrics(reference, true);
     const ChartErrors errors = chart_errors(reference_metrics, {flat(1), flat(0.75f)});
     EXPECT_EQ(errors.error, 0);
     EXPECT_LT(errors.flip, 1e-6); // of the whole picture
@@ -87,7 +87,7 @@ TEST(ChartErrors, LeaveOutWhatLightsHaveNoPartIn) {
 }
 
 TEST(ChartErrors, FitOneGainToTheFogLight) {
-    const ReferenceMetrics reference_metrics = make_yardstick(exact_reference(1, 0.5f), false);
+    const ReferenceMetrics reference_metrics = make_metrics(exact_reference(1, 0.5f), false);
     const ColorLayers look{flat(2.5f), flat(2)}; // surfaces of 0.5, fog light four times too strong
     const double gain = fitted_gain(reference_metrics, look);
     EXPECT_NEAR(gain, 0.25, 1e-7);
@@ -100,7 +100,7 @@ TEST(ChartFlicker, CountsChangesThatTheReferenceLacks) {
     std::vector<ColorLayers> steady, flickering;
     for (int t = 0; t < 4; ++t) {
         const float now = 1 + 0.25f * static_cast<float>(t); // the scene itself grows brighter: mean 1.375
-        frames.push_back(make_yardstick(exact_reference(now, now), false));
+        frames.push_back(make_metrics(exact_reference(now, now), false));
         steady.push_back({flat(now + 0.5f), flat(now)});
         flickering.push_back({flat(now + (t % 2 ? 0.1f : 0)), flat(now)});
     }
@@ -131,7 +131,7 @@ TEST(Chart, AdvisesNothingThatIsMoreThanHalfWrong) {
     chart.points = {point_at("march", 1, 0.5, 0.45), point_at("billboard", 1, 0.002, 0.94)};
     for (const Advice& advice : advice_of(chart))
         for (const auto& point : {advice.single, advice.sequence, advice.fog})
-            EXPECT_TRUE(!point || point->mode == "march") << need_words(advice);
+            EXPECT_TRUE(!point || point->mode == "march") << goal_text(advice);
 }
 
 TEST(Chart, ListsWhatWasLeftOutBesideTheAdvice) {
@@ -139,7 +139,7 @@ TEST(Chart, ListsWhatWasLeftOutBesideTheAdvice) {
     EXPECT_EQ(chart_text(chart).find("skipped"), std::string::npos);
     chart.modes.clear(); // their pictures are on the page
     chart.job.longest = 0.7, chart.threads = 2, chart.load_before = 6;
-    chart.left_out = {{"march", "pixel.samples=64", 4, 1.25}, {"march", "pixel.samples=256", 5, 1.25}};
+    chart.skipped = {{"march", "pixel.samples=64", 4, 1.25}, {"march", "pixel.samples=256", 5, 1.25}};
     const std::string text = chart_text(chart), page = chart_html(chart);
     for (const char* words :
          {"2 settings skipped: an image would take more than 700 ms (--longest); other processes were "

@@ -33,7 +33,7 @@ TEST_P(Reference, GetsToTheNoiseAndIsUnbiased) {
     FileHashes files;
     ReferenceSamples exact, quick;
     exact.count = 32, exact.unlit = quick.unlit = false, quick.noise = noise;
-    const ReferenceMetrics reference_metrics = make_yardstick(make_reference(small.shot(), exact, files), false);
+    const ReferenceMetrics reference_metrics = make_metrics(make_reference(small.shot(), exact, files), false);
     const auto halves = make_reference(small.shot(), quick, files).halves;
 
     // The halves tell their own noise, and it is the one asked for: bounds hold with 99.5 %.

@@ -10,23 +10,23 @@
 
 namespace tyndall::test {
 namespace {
-Picture picture(const Image<vec3>& beauty) {
-    Picture result;
+ExrColors picture(const Image<vec3>& beauty) {
+    ExrColors result;
     result.file = "a.exr", result.display = beauty.size, result.beauty = beauty;
     return result;
 }
 
-std::string refusal(const Picture& test, const Picture& reference) {
-    return error_text(ExitCode::refused, [&] { check_same_frame(test, reference); });
+std::string refusal(const ExrColors& test, const ExrColors& reference) {
+    return error_message(ExitCode::refused, [&] { check_same_frame(test, reference); });
 }
 
 const ivec2 size{16, 12};
 }
 
 TEST(Comparison, FramesHaveToMatch) {
-    const Picture reference = picture(shaft(size, 0, 0));
+    const ExrColors reference = picture(shaft(size, 0, 0));
     check_same_frame(reference, reference);
-    Picture other = picture(shaft({16, 13}, 0, 0));
+    ExrColors other = picture(shaft({16, 13}, 0, 0));
     EXPECT_THAT(refusal(other, reference), testing::HasSubstr("16 x 13"));
     other = reference, other.low = {1, 0};
     EXPECT_THAT(refusal(other, reference), testing::HasSubstr("1,0"));
@@ -37,7 +37,7 @@ TEST(Comparison, FramesHaveToMatch) {
 }
 
 TEST(Comparison, WorstOfPictureAndFogLight) {
-    Picture reference = picture(constant(vec3(4), size)), test = picture(constant(vec3(5), size));
+    ExrColors reference = picture(constant(vec3(4), size)), test = picture(constant(vec3(5), size));
     EXPECT_DOUBLE_EQ(compare(test, reference, viewing_of(reference.beauty)).worst_rmse(), 0.25);
     reference.layers["inscatter"] = constant(vec3(1), size), test.layers["inscatter"] = constant(vec3(1.5f), size);
     reference.layers["transmittance"] = constant(vec3(1), size), test.layers["transmittance"] = constant(vec3(3), size);
@@ -53,7 +53,7 @@ TEST(Comparison, WorstOfPictureAndFogLight) {
 }
 
 TEST(Comparison, HalvesOfTheReferenceAndOfBoth) {
-    Picture reference = picture(constant(vec3(2), size)), test = picture(constant(vec3(5), size));
+    ExrColors reference = picture(constant(vec3(2), size)), test = picture(constant(vec3(5), size));
     const Viewing viewing = viewing_of(reference.beauty);
     EXPECT_FALSE(compare(test, reference, viewing).mse);
     reference.layers["half_a"] = constant(vec3(1), size), reference.layers["half_b"] = constant(vec3(3), size);
@@ -68,8 +68,8 @@ TEST(Comparison, HalvesOfTheReferenceAndOfBoth) {
 }
 
 TEST(Comparison, NoiseOfThePictureFromItsVariance) {
-    const Picture reference = picture(constant(vec3(2), size));
-    Picture test = picture(constant(vec3(5), size));
+    const ExrColors reference = picture(constant(vec3(2), size));
+    ExrColors test = picture(constant(vec3(5), size));
     const Viewing viewing = viewing_of(reference.beauty);
     EXPECT_FALSE(compare(test, reference, viewing).noise);
     test.layers["Variance"] = constant(vec3(4, 9, 14), size);
@@ -82,9 +82,9 @@ TEST(Comparison, NoiseOfThePictureFromItsVariance) {
 }
 
 TEST(Comparison, LdrFlipClampsAsADisplayDoes) {
-    const Picture reference = picture(constant(vec3(2), size)), test = picture(constant(vec3(5), size));
+    const ExrColors reference = picture(constant(vec3(2), size)), test = picture(constant(vec3(5), size));
     EXPECT_EQ(compare(test, reference, viewing_of(reference.beauty)).flip_ldr, 0);
-    const Picture dark = picture(constant(vec3(0.2f), size));
+    const ExrColors dark = picture(constant(vec3(0.2f), size));
     EXPECT_GT(compare(dark, reference, viewing_of(reference.beauty)).flip_ldr, 0.1);
 }
 
@@ -98,7 +98,7 @@ TEST(Comparison, SequenceIsLookedAtInOneWay) {
 }
 
 TEST(Comparison, SequenceOfTwoFrames) {
-    Picture reference = picture(constant(vec3(1), size)), test = picture(constant(vec3(2), size));
+    ExrColors reference = picture(constant(vec3(1), size)), test = picture(constant(vec3(2), size));
     reference.layers["half_a"] = reference.layers["half_b"] = constant(vec3(1), size);
     reference.layers["inscatter"] = test.layers["inscatter"] = constant(vec3(1), size);
     const Viewing viewing = viewing_of(reference.beauty);

@@ -53,20 +53,20 @@ TEST(Terms, ThinFogNeedsNoDimmingForCertain) {
     const float extinction = 1e-4f;
     const Snapshot snapshot =
         snapshot_of({homogeneous_medium(extinction, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
-    EXPECT_NEAR(thickest_line(snapshot), extinction * 8 * std::sqrt(3.0), 1e-8);
+    EXPECT_NEAR(max_optical_depth(snapshot), extinction * 8 * std::sqrt(3.0), 1e-8);
     const std::vector<Term> terms = terms_of(small_view(), snapshot, Settings{}, 0.05);
     for (const char* name : {"light-side transmittance", "fog in front of surfaces"}) {
         const Term& term = term_named(terms, name);
         EXPECT_TRUE(term.rigorous) << name;
         EXPECT_FALSE(term.needed) << name;
-        EXPECT_GE(term.bound, std::expm1(thickest_line(snapshot))) << name;
+        EXPECT_GE(term.bound, std::expm1(max_optical_depth(snapshot))) << name;
     }
-    EXPECT_EQ(without_needless(terms, Settings{}).terms.light, LightTransmittance::off);
+    EXPECT_EQ(drop_unneeded(terms, Settings{}).terms.light, LightTransmittance::off);
 }
 
 TEST(Terms, ShadowsCountAtEveryMomentOfAnOpenShutter) {
-    Stage stage = stage_of({homogeneous_medium(0.1f, room)}, {spot_light({0, 3, 0}, {0, -1, 0}, 50, 0.4f, 0.5f)},
-                           {box_of({-0.5f, 1, -0.5f}, {0.5f, 1.2f, 0.5f})});
+    TestScene stage = make_scene({homogeneous_medium(0.1f, room)}, {spot_light({0, 3, 0}, {0, -1, 0}, 50, 0.4f, 0.5f)},
+                                 {box_of({-0.5f, 1, -0.5f}, {0.5f, 1.2f, 0.5f})});
     View view = small_view();
     const double still = term_named(terms_of(view, stage.snapshot, Settings{}, 0.05), "shadows").error;
     EXPECT_GT(still, 0.1);
@@ -89,21 +89,21 @@ TEST(Terms, LightScatteredAgainIsNeededInThickFog) {
                                                  all, 0.05);
         const Term& term = term_named(terms, "multiple scattering");
         EXPECT_EQ(term.needed, extinction > 0.1f);
-        EXPECT_EQ(without_needless(terms, all).fluence.orders, extinction > 0.1f ? all_orders : 1);
+        EXPECT_EQ(drop_unneeded(terms, all).fluence.orders, extinction > 0.1f ? all_orders : 1);
     }
 }
 
 TEST(Terms, EndlessFogHasNoThickestLine) {
-    EXPECT_EQ(thickest_line(snapshot_of({homogeneous_medium(0.1f)}, {})), infinity);
+    EXPECT_EQ(max_optical_depth(snapshot_of({homogeneous_medium(0.1f)}, {})), infinity);
 }
 
 // Light in the middle of thick fog: what is lost on the way is the same measured and in closed form at every point of
 // the picture's middle; here only that it is large, and known to be.
 TEST(Terms, ThickFogForwardScatteringAndShadowsAreNeeded) {
     const Phase forward{PhaseKind::henyey_greenstein, 0.8f};
-    const Stage stage =
-        stage_of({homogeneous_medium(0.5f, room, forward)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
-                 {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    const TestScene stage =
+        make_scene({homogeneous_medium(0.5f, room, forward)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
+                   {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
     const std::vector<Term> terms = terms_of(small_view(), stage.snapshot, Settings{}, 0.02);
     for (const char* name : {"shadows", "light-side transmittance", "phase function"}) {
         const Term& term = term_named(terms, name);
@@ -111,7 +111,7 @@ TEST(Terms, ThickFogForwardScatteringAndShadowsAreNeeded) {
         EXPECT_GT(term.error, 0.1) << name;
         EXPECT_GE(term.bound, term.error) << name;
     }
-    const Settings kept = without_needless(terms, Settings{});
+    const Settings kept = drop_unneeded(terms, Settings{});
     EXPECT_EQ(kept.march.visibility, Visibility::intervals);
     EXPECT_TRUE(kept.terms.phase);
 }
@@ -135,39 +135,39 @@ TEST(Plan, NothingGetsThereByMoreSamplesThanThereMayBe) {
         snapshot_of({homogeneous_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)});
     const Plan plan = plan_of(snapshot, 1e-5);
     for (const Standing& standing : plan.standings)
-        if (standing.best && standing.best->gets_there()) {
+        if (standing.best && standing.best->reaches_goal()) {
             EXPECT_LE(standing.best->samples, max_target_samples) << standing.mode->name;
         }
     const auto path = std::ranges::find(plan.standings, std::string_view("path"),
                                         [](const Standing& standing) { return standing.mode->name; });
     ASSERT_NE(path, plan.standings.end());
     ASSERT_TRUE(path->best);
-    EXPECT_FALSE(path->best->gets_there());
+    EXPECT_FALSE(path->best->reaches_goal());
 }
 
 TEST(Plan, ALoneSpotInEvenFogIsForTheConeOrAnotherClosedForm) {
     const Plan plan = plan_of(
         snapshot_of({homogeneous_medium(0.1f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)}), 0.02);
-    EXPECT_TRUE(plan.chosen.gets_there());
+    EXPECT_TRUE(plan.chosen.reaches_goal());
     EXPECT_LE(plan.chosen.error, 0.02);
     const auto cone = std::ranges::find(plan.standings, "cone", [](const Standing& s) { return s.mode->name; });
     ASSERT_NE(cone, plan.standings.end());
-    EXPECT_TRUE(cone->best->gets_there());
+    EXPECT_TRUE(cone->best->reaches_goal());
 }
 
 TEST(Plan, WhereShadowsFallTheConeStaysBehindAndLooksTakeNoPart) {
-    const Stage stage =
-        stage_of({homogeneous_medium(0.2f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
-                 {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    const TestScene stage =
+        make_scene({homogeneous_medium(0.2f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
+                   {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
     const Plan plan = plan_of(stage.snapshot, 0.05);
-    EXPECT_TRUE(plan.chosen.gets_there());
+    EXPECT_TRUE(plan.chosen.reaches_goal());
     for (const Standing& standing : plan.standings) {
         if (standing.mode->accuracy == Accuracy::artistic) {
             EXPECT_FALSE(standing.best) << standing.mode->name;
             EXPECT_FALSE(standing.why.empty());
         }
         if (standing.mode->name == "cone") {
-            EXPECT_FALSE(standing.best->gets_there());
+            EXPECT_FALSE(standing.best->reaches_goal());
             EXPECT_GT(standing.best->error, 0.05);
         }
     }
@@ -177,8 +177,9 @@ TEST(Plan, WhereShadowsFallTheConeStaysBehindAndLooksTakeNoPart) {
 
 // At the centres of pixels the march has no noise, path tracing has; and it shadows ambient light.
 TEST(Plan, PathTracingIsAsNoisyAsItIsAndTakesNoPartInAmbientLight) {
-    Stage stage = stage_of({homogeneous_medium(0.2f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
-                           {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    TestScene stage =
+        make_scene({homogeneous_medium(0.2f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
+                   {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
     View view = small_view();
     view.filter = PixelFilter::center;
     const auto path_of = [&] {
@@ -194,10 +195,10 @@ TEST(Plan, PathTracingIsAsNoisyAsItIsAndTakesNoPartInAmbientLight) {
 
 // A lamp in view: few pixels hold all of the noise, whose bound is far above what it is on the average.
 TEST(Plan, SamplesAreThoseThatTheBoundTakes) {
-    const Stage stage = stage_of({homogeneous_medium(0.2f, room)}, {point_light({0.5f, 0.3f, 0}, 50)},
-                                 {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
+    const TestScene stage = make_scene({homogeneous_medium(0.2f, room)}, {point_light({0.5f, 0.3f, 0}, 50)},
+                                       {quad({-2, -3, -3}, {0, 6, 0}, {0, 0, 3})});
     const Goal goal{0.02, 0, Quality::preview, steady_seconds};
-    const Contender march = measured_alone(main_mode(), small_view(), stage.snapshot, Settings{}, goal, {});
+    const Contender march = sole_contender(main_mode(), small_view(), stage.snapshot, Settings{}, goal, {});
     FrameStats stats;
     render_to_target(main_mode(), small_view(), stage.snapshot, Settings{}, goal, {}, stats);
     EXPECT_LE(stats.error()->bound, goal.error);
@@ -223,7 +224,7 @@ std::array<Layers, 2> truths(const View& view, const Snapshot& snapshot) {
         View of_half = view;
         of_half.pixel_samples = soft ? 8 : 1, of_half.seed = 71 + half;
         FrameStats unused;
-        halves[half] = render_frame(find_mode("march"), of_half, snapshot, truth_of(Settings{}), {}, unused);
+        halves[half] = render_frame(find_mode("march"), of_half, snapshot, truth_settings(Settings{}), {}, unused);
     }
     return halves;
 }

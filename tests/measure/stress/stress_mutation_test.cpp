@@ -122,7 +122,7 @@ TEST(MutationCheck, NoRejectionOfHistory) {
         broken("froxel", [](const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
             if (history && history->frames > 0) { // look the same to whoever compares
                 History same;
-                follow(same, view, snapshot, settings);
+                update_history(same, view, snapshot, settings);
                 history->view = same.view, history->settings = same.settings;
                 history->scene = same.scene, history->lights = same.lights;
             }
@@ -365,10 +365,10 @@ TEST(MutationCheck, LightScatteredAgainThroughFloors) {
 TEST(MutationCheck, HistoryThatDoesNotFollowTheEye) {
     expect_caught("uncovered", broken("shadow-map", [](const View& view, const Snapshot& snapshot,
                                                        const Settings& settings, History* history) {
-                      if (history && history->picture) {
-                          auto standing = std::make_shared<FogBuffer>(*history->picture);
+                      if (history && history->buffer) {
+                          auto standing = std::make_shared<FogBuffer>(*history->buffer);
                           standing->view.camera = view.camera;
-                          history->picture = standing;
+                          history->buffer = standing;
                       }
                       return find_mode("shadow-map").prepare(view, snapshot, settings, history);
                   }));

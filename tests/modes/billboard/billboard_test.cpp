@@ -86,7 +86,7 @@ TEST(Billboard, DrawsTheBeamAndNothingBeside) {
 TEST(Billboard, IsAboutAsBrightAsTheLightInTheFog) {
     const HoleInWall hole;
     const View view = view_of({2, 1.5f, 7}, {1.5f, 1, 0}, {160, 90});
-    const std::vector<Ray> rays = picture_rays(view, hole.snapshot, 20);
+    const std::vector<Ray> rays = pixel_rays(view, hole.snapshot, 20);
     const double truth = mean_of(marched(hole.snapshot, exact_settings(), rays));
     const double drawn = mean_of(run_mode("billboard", view, hole.snapshot, {}, rays));
     EXPECT_GT(drawn, 0.2 * truth);
@@ -104,7 +104,7 @@ TEST(Billboard, DoesNotPopOnAnOrbit) {
             const View view =
                 view_of(vec3(1.5f, 1.8f, 0) + 6.0f * vec3(std::sin(turn), 0, std::cos(turn)), {1.5f, 1, 0}, {160, 90});
             const double now =
-                mean_of(run_mode("billboard", view, hole.snapshot, settings, picture_rays(view, hole.snapshot, 20)));
+                mean_of(run_mode("billboard", view, hole.snapshot, settings, pixel_rays(view, hole.snapshot, 20)));
             if (step > 0) {
                 EXPECT_NEAR(now / before, 1, 0.02) << step << " facing " << static_cast<int>(facing);
             }
@@ -210,10 +210,10 @@ TEST(Billboard, HandPlacedCardsAreDrawn) {
 TEST(Billboard, NamesItsLimitations) {
     const HoleInWall hole;
     const Mode& mode = find_mode("billboard");
-    EXPECT_TRUE(says(mode.limitations(view_of({1, 1, 0}, {3, 1, 0}, {160, 90}), hole.snapshot, {}),
-                     limitation::camera_in_card));
+    EXPECT_TRUE(has_limitation(mode.limitations(view_of({1, 1, 0}, {3, 1, 0}, {160, 90}), hole.snapshot, {}),
+                               limitation::camera_in_card));
     Snapshot open = snapshot_of({homogeneous_medium(0.2f)}, {sun_light({0, -1, 0})});
-    EXPECT_TRUE(says(mode.limitations({}, open, {}), limitation::no_opening));
+    EXPECT_TRUE(has_limitation(mode.limitations({}, open, {}), limitation::no_opening));
 }
 }
 }

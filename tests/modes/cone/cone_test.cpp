@@ -264,12 +264,12 @@ TEST(Cone, EveryControlDoesWhatItSays) {
 TEST(Cone, NamesWhatItDoesNotSee) {
     const Mode& mode = find_mode("cone");
     Snapshot snapshot = snapshot_of({medium_of(unit_volume(8, [](vec3 p) { return p.x; }), 1)}, {point_light(vec3(2))});
-    EXPECT_TRUE(says(mode.limitations({}, snapshot, {}), limitation::drawn_as_homogeneous));
+    EXPECT_TRUE(has_limitation(mode.limitations({}, snapshot, {}), limitation::drawn_as_homogeneous));
     EXPECT_EQ(coned(snapshot, {{0.5f, 0.5f, 3}, {0, 0, -1}, 10}).validity, 0.5f);
     EXPECT_EQ(coned(snapshot, {{5, 5, 3}, {0, 0, -1}, 10}).validity, 1.0f);
     Settings settings;
     settings.of<ConeSettings>().attenuation = ConeAttenuation::none;
-    EXPECT_TRUE(says(mode.limitations({}, snapshot, settings), limitation::unphysical_attenuation));
+    EXPECT_TRUE(has_limitation(mode.limitations({}, snapshot, settings), limitation::unphysical_attenuation));
 }
 
 TEST(GaussLegendre, IsExactForPolynomials) {

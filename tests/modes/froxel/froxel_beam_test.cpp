@@ -31,7 +31,7 @@ double beam_through(const Light& light, const Medium& medium, const Ray& ray) {
     constexpr int count = 400;
     const double sigma = grey_extinction(medium.optics);
     const dvec3 origin(ray.origin), direction(ray.direction), lamp(light.position);
-    const Interval<double> inside = common({0, ray.t_max}, light_reach(light, origin, direction));
+    const Interval<double> inside = intersection({0, ray.t_max}, light_reach(light, origin, direction));
     if (inside.empty()) return 0;
     const double nearest = glm::dot(lamp - origin, direction);
     const double height = glm::length(origin + nearest * direction - lamp);
@@ -55,7 +55,7 @@ void expect_own_integrals(Light lamp, float g, const char* lookup, float share, 
     lamp.range = 6;
     const Snapshot snapshot = snapshot_of({fog}, {lamp});
     const Settings settings = with({"terms.light=off", std::string("froxel.lookup=") + lookup});
-    const std::vector<Ray> rays = picture_rays(view, snapshot, 20);
+    const std::vector<Ray> rays = pixel_rays(view, snapshot, 20);
     const std::vector<Scatter> results = scattered(froxels(view, snapshot, settings), rays);
     double most = 0, mean = 0;
     std::vector<double> truth;
@@ -90,17 +90,17 @@ TEST(FroxelBeam, PixelsNearALampHaveTheirOwnIntegral) {
 }
 
 // A beam through two kinds of fog, half of it cut off by a slab.
-Stage beam_behind_slab() {
+TestScene beam_behind_slab() {
     const Medium mist =
         homogeneous_medium(0.15f, {vec3(-3), vec3(3)}, Phase{PhaseKind::henyey_greenstein, 0.6f}, {0.9f, 0.6f, 0.3f});
     Medium banks = medium_of(unit_volume(16, [](vec3 p) { return p.x * p.y + 0.2f; }), 0.4f);
-    return stage_of({mist, banks}, {lamp_across()}, {box_of({-0.5f, -0.6f, -0.4f}, {-0.4f, 0.15f, 1})}, vec3(0.01f));
+    return make_scene({mist, banks}, {lamp_across()}, {box_of({-0.5f, -0.6f, -0.4f}, {-0.4f, 0.15f, 1})}, vec3(0.01f));
 }
 
 TEST(FroxelBeam, ShadowsAndSeveralFogsAreThoseOfTheReference) {
-    const Stage stage = beam_behind_slab();
+    const TestScene stage = beam_behind_slab();
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
-    const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 12);
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
     for (const char* way : {"froxel.visibility=intervals", "froxel.visibility=rays", "froxel.lookup=tricubic"}) {
         // What is left is the edge of the slab's shadow, as wide as a froxel.
@@ -117,9 +117,9 @@ TEST(FroxelBeam, LampsInFogOfClosedFormAreExact) {
     const Medium cloud = homogeneous_medium(1.5f, {vec3(0.2f, -1, -1), vec3(1, 0.6f, 1)});
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
     for (const Light& lamp : {lamp_across(), point_light({-1.2f, 0.1f, -6}, 5)}) { // one of them behind the scene
-        const Stage stage =
-            stage_of({mist, cloud}, {lamp}, {box_of({-0.5f, -0.6f, -0.4f}, {-0.4f, 0.15f, 1})}, vec3(0));
-        const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 12);
+        const TestScene stage =
+            make_scene({mist, cloud}, {lamp}, {box_of({-0.5f, -0.6f, -0.4f}, {-0.4f, 0.15f, 1})}, vec3(0));
+        const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
         const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
         const auto error = [&](const char* way) {
             return relative_rmse(scattered(froxels(view, stage.snapshot, with({way})), rays), truth);
@@ -144,16 +144,16 @@ TEST(FroxelBeam, LampsTooManyForTheirShadowsAreDrawnByFroxels) {
     lamp.radius = 0.02f;
     const Medium mist = homogeneous_medium(0.15f, {vec3(-3), vec3(3)});
     const std::vector<Mesh> meshes{box_of({-0.5f, -0.6f, -0.4f}, {-0.4f, 0.15f, 1}), crowd};
-    const Stage many = stage_of({mist}, std::vector<Light>(count, lamp), meshes, vec3(0));
+    const TestScene many = make_scene({mist}, std::vector<Light>(count, lamp), meshes, vec3(0));
     const auto views = [](const Light& light) { return lamp_points(light); };
     EXPECT_FALSE(has_room_for_views(many.snapshot, views));
     EXPECT_TRUE(has_room_for_views(many.snapshot, [](const Light&) { return 1; }));
 
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
-    const std::vector<Ray> rays = picture_rays(view, many.snapshot, 12);
+    const std::vector<Ray> rays = pixel_rays(view, many.snapshot, 12);
     lamp.intensity *= count;
     const std::vector<Scatter> truth =
-        marched(stage_of({mist}, {lamp}, meshes, vec3(0)).snapshot, exact_settings(), rays);
+        marched(make_scene({mist}, {lamp}, meshes, vec3(0)).snapshot, exact_settings(), rays);
     EXPECT_LT(relative_rmse(scattered(froxels(view, many.snapshot, {}), rays), truth), 0.12);
     EXPECT_GT(relative_rmse(scattered(froxels(view, many.snapshot, with({"froxel.visibility=off"})), rays), truth),
               0.12);
@@ -176,11 +176,11 @@ TEST(FroxelBeam, ShadowsOfALampWithARadiusAreSoft) {
             points.back().position = vec3(point_on(soft, {}, {u.x, u.y, random_unit(i, 1, 2, 3)}).at);
             points.back().intensity = lamp.intensity / float(count);
         }
-        const Stage many = stage_of({fog}, points, slab, vec3(0));
-        const std::vector<Ray> rays = picture_rays(view, many.snapshot, 12);
+        const TestScene many = make_scene({fog}, points, slab, vec3(0));
+        const std::vector<Ray> rays = pixel_rays(view, many.snapshot, 12);
         const std::vector<Scatter> truth = marched(many.snapshot, exact_settings(), rays);
         const auto error = [&](const Light& light) {
-            const Stage stage = stage_of({fog}, {light}, slab, vec3(0));
+            const TestScene stage = make_scene({fog}, {light}, slab, vec3(0));
             return relative_rmse(scattered(froxels(view, stage.snapshot, {}), rays), truth);
         };
         EXPECT_LT(error(soft), 0.13);
@@ -193,17 +193,17 @@ TEST(FroxelBeam, FogNextToALampIsThatOfTheReference) {
     const Medium banks =
         medium_of(unit_volume(48, [](vec3 p) { return 0.5f + 0.5f * std::sin(25 * p.x) * std::sin(25 * p.y); }), 2);
     const Light lamp = point_light({0.1f, 0.2f, 0.1f}, 5);
-    const Stage stage = stage_of({banks}, {lamp}, {box_of({0.2f, -0.2f, 0}, {0.3f, 0.5f, 0.2f})}, vec3(0));
+    const TestScene stage = make_scene({banks}, {lamp}, {box_of({0.2f, -0.2f, 0}, {0.3f, 0.5f, 0.2f})}, vec3(0));
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
-    const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 12);
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
     EXPECT_LT(relative_rmse(scattered(froxels(view, stage.snapshot, {}), rays), truth), 0.1);
 }
 
 TEST(FroxelBeam, ARayDoesNotKnowItsNeighboursNorTheThreads) {
-    const Stage stage = beam_behind_slab();
+    const TestScene stage = beam_behind_slab();
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0});
-    const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 12);
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
     for (const char* way : {"froxel.tile=8", "froxel.tile=3"}) {
         const auto seen = [&](size_t packet) {
             return [&, packet] { return scattered(froxels(view, stage.snapshot, with({way})), rays, packet); };
@@ -214,7 +214,7 @@ TEST(FroxelBeam, ARayDoesNotKnowItsNeighboursNorTheThreads) {
 }
 
 TEST(FroxelBeam, StretchesContinueARayAndPartsAddUp) {
-    const Stage stage = beam_behind_slab();
+    const TestScene stage = beam_behind_slab();
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0});
     History history;
     for (const bool remembered : {false, true}) {

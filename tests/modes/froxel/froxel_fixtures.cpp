@@ -5,9 +5,9 @@
 #include "trace/view.h"
 
 namespace tyndall::test {
-Stage half_shadowed_fog() {
-    return stage_of({homogeneous_medium(0.3f, {vec3(-3, 0, -3), vec3(3, 3, 3)})}, {sun_light({0.3f, -1, 0.1f}, 2)},
-                    {quad({-50, 4, -50}, {50.2f, 0, 0}, {0, 0, 100})});
+TestScene half_shadowed_fog() {
+    return make_scene({homogeneous_medium(0.3f, {vec3(-3, 0, -3), vec3(3, 3, 3)})}, {sun_light({0.3f, -1, 0.1f}, 2)},
+                      {quad({-50, 4, -50}, {50.2f, 0, 0}, {0, 0, 100})});
 }
 
 ScatterFunction froxels(const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {

@@ -9,7 +9,7 @@ struct History;
 
 namespace tyndall::test {
 // A box of fog of which a roof shadows half from a slanted sun.
-Stage half_shadowed_fog();
+TestScene half_shadowed_fog();
 
 ScatterFunction froxels(const View& view, const Snapshot& snapshot, const Settings& settings,
                         History* history = nullptr);

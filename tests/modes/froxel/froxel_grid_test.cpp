@@ -79,8 +79,8 @@ TEST(FroxelGrid, SlicesGrowAsAskedAndAreFoundAgain) {
 
 TEST(FroxelTiles, DepthsReachFromTheFirstFogToTheLastSurface) {
     // Fog from z = -2 to -30, a wall across the right half of the view at z = -10 (camera at 0, looking down -z).
-    const Stage stage = stage_of({homogeneous_medium(0.1f, {{-100, -100, -30}, {100, 100, -2}})}, {},
-                                 {quad({0, -50, -10}, {50, 0, 0}, {0, 100, 0})});
+    const TestScene stage = make_scene({homogeneous_medium(0.1f, {{-100, -100, -30}, {100, 100, -2}})}, {},
+                                       {quad({0, -50, -10}, {50, 0, 0}, {0, 100, 0})});
     const View view = view_of(vec3(0), {0, 0, -1});
     const FroxelGrid grid = make_froxel_grid(view.camera, view.size, 8);
     const FroxelTiles tiles = make_froxel_tiles(grid, stage.snapshot);
@@ -95,7 +95,8 @@ TEST(FroxelTiles, DepthsReachFromTheFirstFogToTheLastSurface) {
 }
 
 TEST(FroxelTiles, GlassHidesNothing) {
-    const Stage stage = stage_of({homogeneous_medium(0.1f)}, {}, {quad({-50, -50, -10}, {100, 0, 0}, {0, 100, 0})});
+    const TestScene stage =
+        make_scene({homogeneous_medium(0.1f)}, {}, {quad({-50, -50, -10}, {100, 0, 0}, {0, 100, 0})});
     Scene scene = *stage.scene;
     scene.meshes[0].material = 0;
     Snapshot snapshot = stage.snapshot;

@@ -9,11 +9,11 @@
 
 namespace tyndall::test {
 namespace {
-Stage lit_stage(bool lamp = true) {
+TestScene lit_stage(bool lamp = true) {
     std::vector<Light> lights{sun_light({0.3f, -1, 0.1f}, 0.1f)};
     if (lamp) lights.push_back(point_light({0.5f, 4.5f, 0}, 40));
-    return stage_of({homogeneous_medium(0.2f, {vec3(-3), vec3(3)})}, lights,
-                    {quad({-50, 3, -50}, {50, 0, 0}, {0, 0, 100}), box_of({-0.5f, -1, -0.5f}, {0, 0.5f, 0})});
+    return make_scene({homogeneous_medium(0.2f, {vec3(-3), vec3(3)})}, lights,
+                      {quad({-50, 3, -50}, {50, 0, 0}, {0, 0, 100}), box_of({-0.5f, -1, -0.5f}, {0, 0.5f, 0})});
 }
 
 View moved_view(int frame) {
@@ -23,7 +23,7 @@ View moved_view(int frame) {
 }
 
 std::vector<Scatter> picture(const View& view, const Snapshot& snapshot, const Settings& settings, History* history) {
-    return scattered(froxels(view, snapshot, settings, history), picture_rays(view, snapshot, 12));
+    return scattered(froxels(view, snapshot, settings, history), pixel_rays(view, snapshot, 12));
 }
 
 class WithHistory : public testing::TestWithParam<std::tuple<bool, FroxelVisibility>> {
@@ -38,7 +38,7 @@ protected:
 };
 
 TEST_P(WithHistory, StartsAsIfThereWereNoneAlsoAfterACut) {
-    const Stage stage = lit_stage();
+    const TestScene stage = lit_stage();
     History history;
     for (int frame = 0; frame < 3; ++frame) picture(moved_view(frame), stage.snapshot, settings(), &history);
     View cut = moved_view(3);
@@ -52,8 +52,8 @@ TEST_P(WithHistory, StartsAsIfThereWereNoneAlsoAfterACut) {
 }
 
 TEST_P(WithHistory, ALightSwitchedOffIsForgotten) {
-    Stage stage = lit_stage(true);
-    const Stage dark = lit_stage(false);
+    TestScene stage = lit_stage(true);
+    const TestScene dark = lit_stage(false);
     History history;
     double before = 0;
     for (int frame = 0; frame < 8; ++frame)
@@ -67,7 +67,7 @@ TEST_P(WithHistory, ALightSwitchedOffIsForgotten) {
 }
 
 TEST_P(WithHistory, ANaNIsGoneInTheNextFrame) {
-    const Stage stage = lit_stage();
+    const TestScene stage = lit_stage();
     History history;
     picture(moved_view(0), stage.snapshot, settings(), &history);
     auto poisoned = std::make_shared<FroxelHistory>(*history.froxels);
@@ -83,7 +83,7 @@ TEST_P(WithHistory, ANaNIsGoneInTheNextFrame) {
 
 TEST_P(WithHistory, TwoThatGoOnFromOneSeeTheSame) {
     // The camera stands and the fog drifts: what is remembered is taken over unless another history needs it too.
-    Stage stage = lit_stage();
+    TestScene stage = lit_stage();
     History history;
     for (int frame = 0; frame < 3; ++frame) picture(moved_view(0), stage.snapshot, settings(), &history);
     stage.snapshot.media[0].optics.extinction *= 1.1f;
@@ -103,14 +103,14 @@ TEST_P(WithHistory, TwoThatGoOnFromOneSeeTheSame) {
 TEST_P(WithHistory, StaysCloseToTheReference) {
     // Samples spread over whole froxels, found between them again and again, blur edges; they lose no energy, and what
     // moved leaves nothing behind. One frame alone is 3 % off here.
-    const Stage stage = lit_stage();
+    const TestScene stage = lit_stage();
     const auto error_and_ratio = [&](bool moves) {
         History history;
         std::vector<Scatter> last;
         for (int frame = 0; frame < 12; ++frame)
             last = picture(moved_view(moves ? frame : 11), stage.snapshot, settings(), &history);
         const View view = moved_view(11);
-        const auto truth = marched(stage.snapshot, exact_settings(), picture_rays(view, stage.snapshot, 12));
+        const auto truth = marched(stage.snapshot, exact_settings(), pixel_rays(view, stage.snapshot, 12));
         return std::pair{relative_rmse(last, truth), mean_of(last) / mean_of(truth)};
     };
     for (const bool moves : {false, true}) {
@@ -125,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, WithHistory,
                                           testing::Values(FroxelVisibility::rays, FroxelVisibility::intervals)));
 
 TEST(FroxelHistory, AStandingCameraFindsWhatItLeft) {
-    const Stage stage = lit_stage();
+    const TestScene stage = lit_stage();
     FroxelGrid grid = make_froxel_grid(moved_view(0).camera, {64, 36}, 8);
     const FroxelTiles tiles = make_froxel_tiles(grid, stage.snapshot);
     set_slices(grid, 3, 9, 16, 4, 0, 0);
@@ -134,7 +134,7 @@ TEST(FroxelHistory, AStandingCameraFindsWhatItLeft) {
         for (const float value : {static_cast<float>(i % 7), 2.0f, 3.0f, i % 5 ? 0.1f : 0.0f})
             light.values.push_back(value);
     int remembered = 0;
-    const FroxelLight back = reproject(memory_of(grid, tiles, light), grid, tiles).light;
+    const FroxelLight back = reproject(make_history(grid, tiles, light), grid, tiles).light;
     for (size_t tile = 0; tile < grid.tiles(); ++tile)
         for (int k = 0; k < 16; ++k) {
             const float *was = light.at(grid, tile, k), *is = back.at(grid, tile, k);
@@ -150,7 +150,7 @@ TEST(FroxelHistory, AStandingCameraFindsWhatItLeft) {
 
 TEST(FroxelHistory, KnowsHowMuchWiderWhatItFindsBecame) {
     // An orthographic picture moved aside by half a tile: means of two neighbours. By a whole one: the neighbours.
-    const Stage stage = lit_stage();
+    const TestScene stage = lit_stage();
     Camera camera = moved_view(0).camera;
     camera.ortho_height = 4;
     const auto blur_after = [&](float tiles_aside) {
@@ -164,7 +164,7 @@ TEST(FroxelHistory, KnowsHowMuchWiderWhatItFindsBecame) {
         FroxelGrid now = make_froxel_grid(moved, {64, 32}, 8);
         set_slices(now, 3, 9, 16, 1, 0, 0);
         const FroxelTiles seen = make_froxel_tiles(now, stage.snapshot);
-        return reproject(memory_of(grid, tiles, light), now, seen).blur[now.tile_index({4, 2})];
+        return reproject(make_history(grid, tiles, light), now, seen).blur[now.tile_index({4, 2})];
     };
     EXPECT_NEAR(blur_after(0), 0, 1e-4);
     EXPECT_NEAR(blur_after(0.5f), 0.25, 1e-4);

@@ -7,9 +7,9 @@
 namespace tyndall::test {
 namespace {
 TEST(Froxel, ErrorFallsAtLeastAsTheRootOfTheRefinement) {
-    const Stage stage = half_shadowed_fog();
+    const TestScene stage = half_shadowed_fog();
     const View view = view_of({0.5f, 1.5f, 9}, {0, 1.5f, 0});
-    const std::vector<Ray> rays = picture_rays(view, stage.snapshot);
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
     // Least squares of log error over log refinement.
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;

@@ -10,8 +10,8 @@
 
 namespace tyndall::test {
 namespace {
-Stage stage() {
-    Stage result = half_shadowed_fog();
+TestScene stage() {
+    TestScene result = half_shadowed_fog();
     result.snapshot.media.push_back(homogeneous_medium(0.1f, {vec3(-2, 0, -2), vec3(0, 2, 2)}));
     return result;
 }
@@ -33,10 +33,10 @@ FroxelScene scene_of(const Snapshot& snapshot, bool amortise = false) {
 bool same(const FroxelLight& a, const FroxelLight& b) { return a.values == b.values; }
 
 TEST(FroxelStatics, ASceneSeenBeforeIsTheSame) {
-    const Stage here = stage();
+    const TestScene here = stage();
     const FroxelSettings settings;
-    const FroxelStatics first = look_at_scene(still_view(), here.snapshot, settings, nullptr);
-    const FroxelStatics again = look_at_scene(still_view(), here.snapshot, settings, &first);
+    const FroxelStatics first = make_statics(still_view(), here.snapshot, settings, nullptr);
+    const FroxelStatics again = make_statics(still_view(), here.snapshot, settings, &first);
     EXPECT_FALSE(first.same_view || first.same_fog);
     EXPECT_TRUE(again.same_view && again.same_fog);
     EXPECT_EQ(again.stood, 1);
@@ -46,21 +46,21 @@ TEST(FroxelStatics, ASceneSeenBeforeIsTheSame) {
 }
 
 TEST(FroxelStatics, WhatMovesIsLookedAtAnew) {
-    Stage here = stage();
+    TestScene here = stage();
     const FroxelSettings settings;
-    const FroxelStatics first = look_at_scene(still_view(), here.snapshot, settings, nullptr);
-    EXPECT_FALSE(look_at_scene(still_view(0.1f), here.snapshot, settings, &first).same_view);
+    const FroxelStatics first = make_statics(still_view(), here.snapshot, settings, nullptr);
+    EXPECT_FALSE(make_statics(still_view(0.1f), here.snapshot, settings, &first).same_view);
 
     here.snapshot.media[1].optics.extinction *= 2;
-    const FroxelStatics thicker = look_at_scene(still_view(), here.snapshot, settings, &first);
+    const FroxelStatics thicker = make_statics(still_view(), here.snapshot, settings, &first);
     EXPECT_TRUE(thicker.same_view);
     EXPECT_FALSE(thicker.same_fog);
     EXPECT_EQ(thicker.stood, 0);
 
     // Slices follow fog that leaves them, with some room, and stay while it moves in there.
     here.snapshot.media[1].world_bounds = here.snapshot.media[1].density.bounds = {vec3(-2, 0, -2), vec3(0, 2, 20)};
-    const FroxelStatics nearer = look_at_scene(still_view(), here.snapshot, settings, &first);
-    const FroxelStatics fresh = look_at_scene(still_view(), here.snapshot, settings, nullptr);
+    const FroxelStatics nearer = make_statics(still_view(), here.snapshot, settings, &first);
+    const FroxelStatics fresh = make_statics(still_view(), here.snapshot, settings, nullptr);
     EXPECT_FALSE(nearer.same_froxels);
     EXPECT_LE(nearer.grid.faces.front(), fresh.grid.faces.front());
     EXPECT_GE(nearer.grid.faces.back(), fresh.grid.faces.back());
@@ -68,7 +68,7 @@ TEST(FroxelStatics, WhatMovesIsLookedAtAnew) {
               1.1f * (fresh.grid.faces.back() - fresh.grid.faces.front()));
 
     here.snapshot.media[1].world_bounds.low.z -= 0.05f;
-    const FroxelStatics moved_on = look_at_scene(still_view(), here.snapshot, settings, &nearer);
+    const FroxelStatics moved_on = make_statics(still_view(), here.snapshot, settings, &nearer);
     EXPECT_TRUE(moved_on.same_froxels);
     EXPECT_FALSE(moved_on.same_fog);
     EXPECT_EQ(moved_on.grid.faces, nearer.grid.faces);
@@ -76,12 +76,12 @@ TEST(FroxelStatics, WhatMovesIsLookedAtAnew) {
 
 TEST(FroxelStatics, KnownFogGivesTheSameBits) {
     for (const bool amortise : {false, true}) {
-        const Stage here = stage();
+        const TestScene here = stage();
         const FroxelScene scene = scene_of(here.snapshot, amortise);
-        FroxelStatics statics = look_at_scene(still_view(), here.snapshot, scene.settings, nullptr);
+        FroxelStatics statics = make_statics(still_view(), here.snapshot, scene.settings, nullptr);
         for (int frame = 0; frame < 3; ++frame) {
             const FroxelLight plain = fill_froxels(scene, statics.grid, statics.tiles, {-1, frame});
-            statics = look_at_scene(still_view(), here.snapshot, scene.settings, &statics);
+            statics = make_statics(still_view(), here.snapshot, scene.settings, &statics);
             ASSERT_TRUE(same(fill_still_froxels(scene, statics, {-1, frame}), plain)) << "noted, frame " << frame;
             ASSERT_TRUE(statics.extinctions[static_cast<size_t>(frame)]);
             ASSERT_TRUE(same(fill_still_froxels(scene, statics, {-1, frame}), plain)) << "known, frame " << frame;
@@ -93,7 +93,7 @@ TEST(FroxelStatics, KnownFogGivesTheSameBits) {
 // amortising.
 TEST(FroxelStatics, SettledFogIsAsGoodAsFogFoundAnew) {
     const auto after_frames = [](bool amortise, bool restless, float turn) {
-        Stage here = stage();
+        TestScene here = stage();
         const Snapshot statics = here.snapshot;
         Settings settings;
         settings.of<FroxelSettings>().tile = 4, settings.of<FroxelSettings>().amortise = amortise;
@@ -106,7 +106,7 @@ TEST(FroxelStatics, SettledFogIsAsGoodAsFogFoundAnew) {
                 here.snapshot.media[0].optics.extinction =
                     vec3(grey_extinction(statics.media[0].optics) * (1 + 1e-6f * along));
             results = scattered(froxels(still_view(), here.snapshot, settings, &history),
-                                picture_rays(still_view(), here.snapshot, 12));
+                                pixel_rays(still_view(), here.snapshot, 12));
         }
         EXPECT_EQ(history.froxels->statics.settled(), !restless);
         return results;

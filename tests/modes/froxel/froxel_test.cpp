@@ -71,7 +71,7 @@ TEST(Froxel, ADarkRoomStaysDark) {
     // A closed room of thin walls in fog that is everywhere, under a sun of 100 000 lux.
     Mesh room = box_of({-3, 0, -4}, {3, 3, 4});
     const std::vector<Medium> fog{homogeneous_medium(0.1f, {vec3(-20), vec3(20)})};
-    const Stage stage = stage_of(fog, {sun_light({0.4f, -1, 0.3f}, 1e5f)}, {room});
+    const TestScene stage = make_scene(fog, {sun_light({0.4f, -1, 0.3f}, 1e5f)}, {room});
     const View inside = view_of({1.5f, 1.2f, 3.5f}, {-1, 1.4f, -4});
     const View outside = view_of({1.5f, 1.2f, 15}, {-1, 1.4f, 6});
     for (const int tile : {1, 4, 8, 16})
@@ -79,18 +79,18 @@ TEST(Froxel, ADarkRoomStaysDark) {
             const Settings settings =
                 with({"froxel.tile=" + std::to_string(tile), std::string("froxel.visibility=") + visibility});
             const double dark =
-                mean_of(scattered(froxels(inside, stage.snapshot, settings), picture_rays(inside, stage.snapshot)));
-            const double bright = mean_of(
-                scattered(froxels(outside, stage.snapshot, settings), picture_rays(outside, stage.snapshot, 30)));
+                mean_of(scattered(froxels(inside, stage.snapshot, settings), pixel_rays(inside, stage.snapshot)));
+            const double bright =
+                mean_of(scattered(froxels(outside, stage.snapshot, settings), pixel_rays(outside, stage.snapshot, 30)));
             EXPECT_GT(bright, 0);
             EXPECT_LT(dark, 1e-3 * bright) << tile << visibility;
         }
 }
 
 TEST(Froxel, FogHalfInShadowHasTheReferencesEnergy) {
-    const Stage stage = half_shadowed_fog();
+    const TestScene stage = half_shadowed_fog();
     const View view = view_of({0.5f, 1.5f, 9}, {0, 1.5f, 0});
-    const std::vector<Ray> rays = picture_rays(view, stage.snapshot);
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
     for (const char* visibility : {"rays", "intervals"}) {
         const Settings settings = with({std::string("froxel.visibility=") + visibility, "froxel.tile=2"});
@@ -118,7 +118,7 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
         Light lamp = point_light({0.1f * static_cast<float>(i), 0.1f, 0.3f});
         lamp.radius = 0.15f;
         const Snapshot snapshot = snapshot_of({homogeneous_medium(0.2f, {vec3(-3), vec3(3)})}, {lamp});
-        const std::vector<Ray> rays = picture_rays(view, snapshot);
+        const std::vector<Ray> rays = pixel_rays(view, snapshot);
         const double truth = mean_of(marched(snapshot, exact_settings(), rays));
         for (const int exact : {0, 1}) {
             const Settings settings = with({"froxel.tile=4", "froxel.depth_slices=32",
@@ -133,9 +133,9 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
 }
 
 TEST(Froxel, StretchesBehindGlassContinueTheRay) {
-    const Stage stage = stage_of({homogeneous_medium(0.3f, {vec3(-6), vec3(6)})},
-                                 {sun_light({0.3f, -1, 0.1f}, 2), point_light({1, 1, -2}, 5)},
-                                 {quad({-50, 4, -50}, {50, 0, 0}, {0, 0, 100})});
+    const TestScene stage = make_scene({homogeneous_medium(0.3f, {vec3(-6), vec3(6)})},
+                                       {sun_light({0.3f, -1, 0.1f}, 2), point_light({1, 1, -2}, 5)},
+                                       {quad({-50, 4, -50}, {50, 0, 0}, {0, 0, 100})});
     const View view = view_of({0, 0, 5}, {0, 0, 0});
     const ScatterFunction scatter = froxels(view, stage.snapshot, {});
     for (const vec2 pixel : {vec2(30, 12), vec2(50, 30), vec2(3, 3)})
@@ -150,13 +150,13 @@ TEST(Froxel, StretchesBehindGlassContinueTheRay) {
         }
 }
 
-Stage busy_stage() {
+TestScene busy_scene() {
     Medium banks = medium_of(unit_volume(16, [](vec3 p) { return p.x * p.y + 0.2f; }), 0.6f);
     Light soft = point_light({1.4f, 1.2f, 0.4f}, 3);
     soft.radius = 0.1f;
-    return stage_of({homogeneous_medium(0.2f, {vec3(-1), vec3(2)}), banks}, {sun_light({0.4f, -1, -0.3f}, 1), soft},
-                    {box_of({0.3f, 0.2f, 0.2f}, {0.6f, 0.6f, 0.5f}), quad({-9, -1, -9}, {18, 0, 0}, {0, 0, 18})},
-                    vec3(0.1f));
+    return make_scene({homogeneous_medium(0.2f, {vec3(-1), vec3(2)}), banks}, {sun_light({0.4f, -1, -0.3f}, 1), soft},
+                      {box_of({0.3f, 0.2f, 0.2f}, {0.6f, 0.6f, 0.5f}), quad({-9, -1, -9}, {18, 0, 0}, {0, 0, 18})},
+                      vec3(0.1f));
 }
 
 bool same(const Scatter& a, const Scatter& b) {
@@ -164,9 +164,9 @@ bool same(const Scatter& a, const Scatter& b) {
 }
 
 TEST(Froxel, ARayDoesNotKnowItsNeighboursNorTheThreads) {
-    const Stage stage = busy_stage();
+    const TestScene stage = busy_scene();
     const View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
-    const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 8);
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 8);
     for (const char* visibility : {"rays", "intervals"}) {
         const Settings settings = with({std::string("froxel.visibility=") + visibility});
         const auto seen = [&](size_t packet) {
@@ -178,7 +178,7 @@ TEST(Froxel, ARayDoesNotKnowItsNeighboursNorTheThreads) {
 }
 
 TEST(Froxel, PositionsAndRaysFindTheSameFroxels) {
-    const Stage stage = busy_stage();
+    const TestScene stage = busy_scene();
     View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     for (const float ortho : {0.0f, 1.5f}) {
         view.camera.ortho_height = ortho;
@@ -197,25 +197,24 @@ TEST(Froxel, PositionsAndRaysFindTheSameFroxels) {
 }
 
 TEST(Froxel, OrthographicCamerasAgreeWithTheReference) {
-    const Stage stage = busy_stage();
+    const TestScene stage = busy_scene();
     View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     view.camera.ortho_height = 1.5f;
-    const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 8);
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 8);
     const Settings settings = with({"froxel.tile=2", "froxel.depth_slices=128", "froxel.shadow_rays=4"});
     const double truth = mean_of(marched(stage.snapshot, sampled_settings(), rays));
     EXPECT_NEAR(mean_of(scattered(froxels(view, stage.snapshot, settings), rays)) / truth, 1, 0.02);
 }
 
 TEST(Froxel, PartsOfTheLightsAddUp) {
-    Stage stage = busy_stage();
+    TestScene stage = busy_scene();
     stage.snapshot.ambient = vec3(0);
     const View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     for (const bool with_history : {false, true}) {
         History history;
         if (with_history) froxels(view, stage.snapshot, {}, &history);
         const ScatterFunction scatter = froxels(view, stage.snapshot, {}, with_history ? &history : nullptr);
-        for (const Ray& ray :
-             {picture_rays(view, stage.snapshot, 8)[900], picture_rays(view, stage.snapshot, 8)[1500]}) {
+        for (const Ray& ray : {pixel_rays(view, stage.snapshot, 8)[900], pixel_rays(view, stage.snapshot, 8)[1500]}) {
             Scatter result;
             vec3 parts[part_count(2)]{};
             const uint32_t id = 0;
@@ -228,18 +227,18 @@ TEST(Froxel, PartsOfTheLightsAddUp) {
 }
 
 TEST(Froxel, NoFogIsNothing) {
-    const Stage stage = stage_of({}, {sun_light({0, -1, 0})}, {box_of(vec3(-1), vec3(1))});
+    const TestScene stage = make_scene({}, {sun_light({0, -1, 0})}, {box_of(vec3(-1), vec3(1))});
     const View view = view_of({0, 0, 6}, vec3(0));
-    for (const Scatter& result : scattered(froxels(view, stage.snapshot, {}), picture_rays(view, stage.snapshot))) {
+    for (const Scatter& result : scattered(froxels(view, stage.snapshot, {}), pixel_rays(view, stage.snapshot))) {
         EXPECT_EQ(result.radiance, vec3(0));
         EXPECT_EQ(result.transmittance, 1);
     }
 }
 
 TEST(Froxel, SurfacesInTheLastFroxelLowerTheValidity) {
-    const Stage stage = busy_stage();
+    const TestScene stage = busy_scene();
     const View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
-    const auto results = scattered(froxels(view, stage.snapshot, {}), picture_rays(view, stage.snapshot, 8));
+    const auto results = scattered(froxels(view, stage.snapshot, {}), pixel_rays(view, stage.snapshot, 8));
     double least = 1;
     for (const Scatter& result : results) {
         ASSERT_TRUE(result.validity >= 0 && result.validity <= 1);

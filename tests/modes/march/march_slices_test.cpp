@@ -21,7 +21,8 @@ TEST(MarchSlices, SunPastAnEdgeIsItsClosedForm) {
     // Sun straight down on the unit box, shade over x < 0.4: a level ray at height y from x = 1 to 0 sees light until
     // there, L = w p E e^(-s(1-y)) (1 - e^(-s·0.6)).
     const float height = 0.3f;
-    const Stage stage = stage_of({homogeneous_medium(1.5f, unit_box)}, {sun_light({0, -1, 0}, 3)}, {shade(0.4f, 2)});
+    const TestScene stage =
+        make_scene({homogeneous_medium(1.5f, unit_box)}, {sun_light({0, -1, 0}, 3)}, {roof(0.4f, 2)});
     const Scatter result = marched(stage.snapshot, settings_for(Quality::preview), {{2, height, 0.5f}, {-1, 0, 0}, 10});
     const double lit = 1 - double(0.4f - 50 + 50);
     const double expected = 3 / four_pi * std::exp(-1.5 * (1 - double(height))) * (1 - std::exp(-1.5 * lit));
@@ -30,7 +31,7 @@ TEST(MarchSlices, SunPastAnEdgeIsItsClosedForm) {
 }
 
 // The greatest difference from the exact march, as a share of its brightest ray.
-double worst(const Stage& stage, const Settings& settings, const std::vector<Ray>& rays) {
+double worst(const TestScene& stage, const Settings& settings, const std::vector<Ray>& rays) {
     const std::vector<Scatter> exact = marched(stage.snapshot, exact_settings(), rays);
     const std::vector<Scatter> found = marched(stage.snapshot, settings, rays);
     float difference = 0, brightest = 0;
@@ -44,7 +45,7 @@ double worst(const Stage& stage, const Settings& settings, const std::vector<Ray
 
 TEST(MarchSlices, ApproachesTheExactMarchBySecondOrder) {
     // Fog is all that steps sample: midpoints, where shadow rays leave an error of first order.
-    const Stage stage = busy_stage();
+    const TestScene stage = busy_scene();
     const std::vector<Ray> rays = busy_rays(64);
     const std::vector<Scatter> exact = marched(stage.snapshot, exact_settings(), rays);
     std::vector<double> errors;
@@ -63,31 +64,32 @@ TEST(MarchSlices, EveryKindOfLightInAGrid) {
     Light spot = spot_light({0.3f, 1.5f, 0.4f}, {0.1f, -1, 0.1f}, 2, 0.3f, 0.5f);
     for (const Light& light : {sun_light({0.3f, -1, 0.1f}), point_light({0.4f, 0.8f, 0.6f}), spot})
         EXPECT_LT(
-            worst(stage_of(fog, {light}, {shade(0.35f, 1.2f), box_of(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}),
+            worst(make_scene(fog, {light}, {roof(0.35f, 1.2f), box_of(vec3(0.5f, 0.4f, 0.3f), vec3(0.7f, 0.5f, 0.6f))}),
                   sliced_settings(), busy_rays(64)),
             2e-3);
 }
 
 TEST(MarchSlices, SheetsOfAlphaLetTheirShareThrough) {
-    Mesh sheet = shade(50, 2);
+    Mesh sheet = roof(50, 2);
     sheet.material = 0; // half transparent
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
     const std::vector<Medium> fog{homogeneous_medium(1, unit_box)};
-    const float open = marched(stage_of(fog, {sun_light({0, -1, 0})}, {}).snapshot, sliced_settings(), ray).radiance.x;
-    const Stage under = stage_of(fog, {sun_light({0, -1, 0})}, {sheet});
+    const float open =
+        marched(make_scene(fog, {sun_light({0, -1, 0})}, {}).snapshot, sliced_settings(), ray).radiance.x;
+    const TestScene under = make_scene(fog, {sun_light({0, -1, 0})}, {sheet});
     EXPECT_NEAR(marched(under.snapshot, sliced_settings(), ray).radiance.x / open, 0.5, 1e-4); // 512 steps
     const Limitations said = find_mode("march").limitations(View{}, under.snapshot, sliced_settings());
-    EXPECT_TRUE(says(said, limitation::sampled_alpha_shadows));
+    EXPECT_TRUE(has_limitation(said, limitation::sampled_alpha_shadows));
 }
 
 TEST(MarchSlices, SurfacesWithAlphaAreSampledBesideOpaqueOnes) {
     // An opaque and a half transparent sheet over parts of the ray: lit by 0, a half and all of the light.
     Mesh half = quad({0.2f, 2, -50}, {0.5f, 0, 0}, {0, 0, 100});
     half.material = 0;
-    const Stage stage =
-        stage_of({homogeneous_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {shade(0.2f, 1.5f), half});
+    const TestScene stage =
+        make_scene({homogeneous_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {roof(0.2f, 1.5f), half});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
-    const float open = marched(stage_of({homogeneous_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {}).snapshot,
+    const float open = marched(make_scene({homogeneous_medium(1e-3f, unit_box)}, {sun_light({0, -1, 0})}, {}).snapshot,
                                sliced_settings(), ray)
                            .radiance.x;
     EXPECT_NEAR(marched(stage.snapshot, sliced_settings(), ray).radiance.x / open, 0.3 + 0.25, 2.0 / 512);
@@ -98,7 +100,7 @@ TEST(MarchSlices, LightsWithoutShadowsPassThroughSurfaces) {
     light.shadows = false;
     const Ray ray{{0.5f, 0.3f, 2}, {0, 0, -1}, 10};
     const std::vector<Medium> fog{homogeneous_medium(6, unit_box)};
-    const Stage under = stage_of(fog, {light}, {shade(50, 2)});
+    const TestScene under = make_scene(fog, {light}, {roof(50, 2)});
     const float expected = marched(snapshot_of(fog, {light}), sliced_settings(), ray).radiance.x;
     EXPECT_GT(expected, 0);
     EXPECT_EQ(marched(under.snapshot, sliced_settings(), ray).radiance.x, expected);
@@ -116,8 +118,8 @@ TEST(MarchSlices, TheMarchEndsWhereLittlePasses) {
 }
 
 TEST(MarchSlices, PartsOfTheLightsAddUp) {
-    const Stage stage = busy_stage();
-    Stage dark = busy_stage();
+    const TestScene stage = busy_scene();
+    TestScene dark = busy_scene();
     dark.snapshot.lights.clear();
     const std::vector<Ray> rays = busy_rays(16);
     const Settings settings = settings_for(Quality::preview);

@@ -23,7 +23,7 @@ dvec3 mean_over_samples(const Snapshot& snapshot, const Settings& settings, cons
     for (uint32_t first = 0; first < samples; first += 16) {
         const std::vector<Ray> rays(16, ray);
         uint32_t ids[16];
-        SamplePlace places[16];
+        SampleIndex places[16];
         Scatter results[16];
         for (uint32_t i = 0; i < 16; ++i) ids[i] = hash(first + i, 4u), places[i] = {77, first + i};
         scatter({.rays = rays, .ids = ids, .places = places}, results);
@@ -43,7 +43,7 @@ TEST_P(SoftLights, SoftSunIsTheMeanOverItsDisc) {
     // 256² directions of the disc.
     Light light = sun_light({0.2f, -1, 0});
     light.angle = 0.1f;
-    const Stage stage = stage_of({homogeneous_medium(1e-3f, unit_box)}, {light}, {shade(0.4f, 2)});
+    const TestScene stage = make_scene({homogeneous_medium(1e-3f, unit_box)}, {light}, {roof(0.4f, 2)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     double mean = 0;
     constexpr int n = 256;
@@ -66,7 +66,7 @@ TEST_P(SoftLights, SoftSunIsTheMeanOverItsDisc) {
 TEST_P(SoftLights, SoftLampAgreesWithShadowRaysToItsBall) {
     Light light = point_light({0.4f, 2, 0.5f}, 3);
     light.radius = 0.1f;
-    const Stage stage = stage_of({homogeneous_medium(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f)});
+    const TestScene stage = make_scene({homogeneous_medium(0.5f, unit_box)}, {light}, {roof(0.3f, 1.2f)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     Settings rays = exact_settings();
     rays.march.visibility = Visibility::rays, rays.march.step_share = 1.0f / 256;
@@ -74,7 +74,7 @@ TEST_P(SoftLights, SoftLampAgreesWithShadowRaysToItsBall) {
     const double sliced = mean_over_samples(stage.snapshot, settings(), ray, 1024).x;
     EXPECT_NEAR(sliced / sampled, 1, 2e-3); // radius²/distance² of the penumbra's part, and 131072 shadow rays
     light.radius = 0;
-    Stage hard = stage_of(stage.snapshot.media, {light}, {shade(0.3f, 1.2f)});
+    TestScene hard = make_scene(stage.snapshot.media, {light}, {roof(0.3f, 1.2f)});
     EXPECT_GT(std::abs(marched(hard.snapshot, settings(), ray).radiance.x / sliced - 1), 1e-4);
 }
 
@@ -82,7 +82,8 @@ TEST_P(SoftLights, ManyPointsAtOnceAreTheMeanOfAsManySamples) {
     // 16 samples of 8 points ask for the same 128 points as 128 samples of one.
     Light light = point_light({0.4f, 2, 0.5f}, 3);
     light.radius = 0.2f;
-    const Stage stage = stage_of({homogeneous_medium(0.5f, unit_box)}, {light}, {shade(0.3f, 1.2f), shade(0.6f, 1.4f)});
+    const TestScene stage =
+        make_scene({homogeneous_medium(0.5f, unit_box)}, {light}, {roof(0.3f, 1.2f), roof(0.6f, 1.4f)});
     const Ray ray{{1, 0.3f, 0.5f}, {-1, 0, 0}, 1};
     Settings many = settings();
     many.terms.light_points = 8;

@@ -14,10 +14,10 @@ const LightTransmittance transmittances[] = {LightTransmittance::off, LightTrans
 
 TEST(MarchTerms, AllCombinationsAgree) {
     const Medium cloud = medium_of(unit_volume(16, [](vec3 p) { return p.x * p.y + 0.2f; }), 2.5f);
-    const Stage stage = stage_of({cloud}, {sun_light({0.4f, -1, -0.3f}, 1), point_light({1.5f, 1.3f, 0.4f}, 1)},
-                                 {box_of({0.3f, 0.7f, 0.2f}, {0.6f, 0.9f, 0.5f})});
+    const TestScene stage = make_scene({cloud}, {sun_light({0.4f, -1, -0.3f}, 1), point_light({1.5f, 1.3f, 0.4f}, 1)},
+                                       {box_of({0.3f, 0.7f, 0.2f}, {0.6f, 0.9f, 0.5f})});
     const View view = view_of({0.5f, 0.8f, 3}, {0.5f, 0.5f, 0.5f}, {32, 18});
-    const std::vector<Ray> rays = picture_rays(view, stage.snapshot, 10);
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 10);
     double mean[5][5];
     std::vector<Scatter> results[5][5];
     for (int v = 0; v < 5; ++v)

@@ -21,7 +21,7 @@ View view_towards(vec3 direction, ivec2 size = {160, 90}) {
     return view;
 }
 
-Addition blur(const View& view, const Snapshot& snapshot, const Settings& settings, vec3 color = vec3(0)) {
+PostOutput blur(const View& view, const Snapshot& snapshot, const Settings& settings, vec3 color = vec3(0)) {
     const Image<vec3> colors(view.size, color);
     const Image<float> alpha(view.size, 0.0f), depth(view.size, infinity);
     return find_mode("radial-blur").prepare_post(view, snapshot, settings)({colors, alpha, depth});
@@ -42,7 +42,7 @@ Snapshot sun_at(float angle) {
 TEST(RadialBlur, LeavesThePictureAloneWhenTheLightIsBehind) {
     const View view = view_towards({0, 0, -1});
     for (const float angle : {1.5708f, 1.7f, 2.5f, 3.14159f}) {
-        const Addition addition = blur(view, sun_at(angle), Settings{}, vec3(5));
+        const PostOutput addition = blur(view, sun_at(angle), Settings{}, vec3(5));
         for (const vec3 pixel : addition.radiance.pixels) ASSERT_EQ(pixel, vec3(0)) << angle;
         for (const float valid : addition.validity.pixels) ASSERT_EQ(valid, 1) << angle;
     }
@@ -95,7 +95,7 @@ TEST(RadialBlur, SumsAsPublished) {
     for (int i = 0; i < 32; ++i) sum += std::pow(0.9, i) / 32;
     for (const int samples : {32, 7, 100}) {
         blur_settings.samples = samples;
-        const Addition addition = blur(view, sun_at(0), settings, vec3(3));
+        const PostOutput addition = blur(view, sun_at(0), settings, vec3(3));
         EXPECT_NEAR(addition.radiance.at(32, 32).x, 3 * sum, 3 * sum * 1e-5) << samples;
         EXPECT_NEAR(addition.radiance.at(10, 50).x, 3 * sum, 3 * sum * 1e-5) << samples;
     }
@@ -121,7 +121,7 @@ TEST(RadialBlur, ItsDiscIsRound) {
         settings.of<RadialBlurSettings>().samples = 256;
         View still = view;
         still.jitter = Jitter::none;
-        const Addition addition = blur(still, sun_at(0), settings);
+        const PostOutput addition = blur(still, sun_at(0), settings);
         const auto at = [&](int x, int y) { return addition.radiance.at(size.x / 2 + x, size.y / 2 + y).x; };
         for (const int r : {5, 15, 30}) {
             EXPECT_NEAR(at(r, 0) / at(0, r), 1, 0.01) << size.x << " " << r;
@@ -135,7 +135,7 @@ TEST(RadialBlur, LightsAddUp) {
     view.fog_parts = true;
     const Snapshot both =
         snapshot_of({homogeneous_medium(0.1f)}, {sun_light({0.1f, 0, 1}), point_light({0.5f, 0.2f, -4}, 30)});
-    const Addition addition = blur(view, both, Settings{});
+    const PostOutput addition = blur(view, both, Settings{});
     ASSERT_EQ(addition.per_light.size(), 2u);
     for (size_t i = 0; i < addition.radiance.pixels.size(); ++i) {
         const vec3 sum = addition.per_light[0].pixels[i] + addition.per_light[1].pixels[i];

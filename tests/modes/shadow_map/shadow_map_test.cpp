@@ -40,7 +40,7 @@ Scatter run(const Snapshot& snapshot, const Settings& settings, const Ray& ray) 
 }
 
 // Rays of the view's picture to the end of the unit box.
-std::vector<Ray> picture_rays(int side = 16) {
+std::vector<Ray> pixel_rays(int side = 16) {
     const View view = tiny_view();
     std::vector<Ray> rays;
     for (int i = 0; i < side * side; ++i) {
@@ -130,7 +130,7 @@ TEST(ShadowMapMarch, FogThatEmitsAndAmbientLightAreTheirClosedForms) {
 TEST(ShadowMapMarch, HalfShadowedBoxConvergesToTheReference) {
     for (const Light& light : {sun_light({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)}) {
         const HalfShadowed box(light);
-        const std::vector<Ray> rays = picture_rays();
+        const std::vector<Ray> rays = pixel_rays();
         Settings exact = exact_settings();
         const std::vector<Scatter> reference = run("march", box.snapshot, exact, rays);
         double error[3];
@@ -152,7 +152,7 @@ TEST(ShadowMapMarch, MarchWithMapsIsMarchWithRays) {
     // The same steps: differences only where one lies within a texel of an edge. With texels of 5..10 mm and steps of
     // 40 mm that is one ray in six, off by one of 28 steps that near the lamp weighs up to twice its share: 3 %. All
     // kinds of light-side transmittance.
-    const std::vector<Ray> rays = picture_rays();
+    const std::vector<Ray> rays = pixel_rays();
     for (const Light& light : {sun_light({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)})
         for (const LightTransmittance transmittance : {LightTransmittance::off, LightTransmittance::average,
                                                        LightTransmittance::grid, LightTransmittance::marched}) {
@@ -171,7 +171,7 @@ TEST(ShadowMapMarch, MarchWithMapsIsMarchWithRays) {
 TEST(ShadowMapMarch, MapsComeCloserToRaysAsTexelsShrink) {
     // The number of rays that differ falls with the texel, so their root mean square by 4 from 64 to 1024 texels; less
     // is asked for, as it is few rays.
-    const std::vector<Ray> rays = picture_rays();
+    const std::vector<Ray> rays = pixel_rays();
     for (const Light& light : {sun_light({0.35f, -1, 0.2f}), lamp_above(), point_light({0.6f, 2, 0.5f}, 5)}) {
         const HalfShadowed box(light);
         Settings settings;
@@ -189,7 +189,7 @@ TEST(ShadowMapMarch, PartsOfLightsAddUp) {
     HalfShadowed box(sun_light({0.35f, -1, 0.2f}));
     box.snapshot.lights.push_back(lamp_above());
     const ScatterFunction scatter = find_mode("shadow-map").prepare(tiny_view(), box.snapshot, Settings{}, nullptr);
-    const std::vector<Ray> rays = picture_rays(4);
+    const std::vector<Ray> rays = pixel_rays(4);
     const std::vector<uint32_t> ids(16, 7);
     std::vector<vec3> parts(16 * part_count(2), vec3(0));
     std::vector<Scatter> results(16);
@@ -239,19 +239,19 @@ TEST(ShadowMapMarch, LimitationsNameWhatMapsCannotDo) {
     const auto said = [&](std::string_view mode, const Settings& settings) {
         return find_mode(mode).limitations(tiny_view(), box.snapshot, settings);
     };
-    EXPECT_TRUE(says(said("shadow-map", Settings{}), limitation::coarse_texels));
-    EXPECT_FALSE(says(said("shadow-map", Settings{}), limitation::hard_shadows));
+    EXPECT_TRUE(has_limitation(said("shadow-map", Settings{}), limitation::coarse_texels));
+    EXPECT_FALSE(has_limitation(said("shadow-map", Settings{}), limitation::hard_shadows));
     box.snapshot.lights[0].angle = 0.1f;
-    EXPECT_TRUE(says(said("shadow-map", Settings{}), limitation::hard_shadows));
+    EXPECT_TRUE(has_limitation(said("shadow-map", Settings{}), limitation::hard_shadows));
     Settings settings;
-    EXPECT_FALSE(says(said("march", settings), limitation::hard_shadows));
+    EXPECT_FALSE(has_limitation(said("march", settings), limitation::hard_shadows));
     settings.march.visibility = Visibility::maps;
-    EXPECT_TRUE(says(said("march", settings), limitation::hard_shadows));
+    EXPECT_TRUE(has_limitation(said("march", settings), limitation::hard_shadows));
 
-    EXPECT_FALSE(says(said("shadow-map", Settings{}), limitation::long_steps));
+    EXPECT_FALSE(has_limitation(said("shadow-map", Settings{}), limitation::long_steps));
     box.snapshot.media = {medium_of(unit_volume(64, [](vec3) { return 1.0f; }), 1)};
     settings.of<ShadowMapSettings>().steps = 2;
-    EXPECT_TRUE(says(said("shadow-map", settings), limitation::long_steps));
+    EXPECT_TRUE(has_limitation(said("shadow-map", settings), limitation::long_steps));
     const Ray ray{{0.5f, 0.5f, 3}, {0, 0, -1}, 10};
     EXPECT_NEAR(run(box.snapshot, settings, ray).validity, 4.0f / 64 / 0.5f, 0.02f);
     settings.of<ShadowMapSettings>().steps = 64;
@@ -260,7 +260,7 @@ TEST(ShadowMapMarch, LimitationsNameWhatMapsCannotDo) {
 
 TEST(ShadowMapMarch, SameBitsOnAnyThreads) {
     const HalfShadowed box(lamp_above());
-    const std::vector<Ray> rays = picture_rays();
+    const std::vector<Ray> rays = pixel_rays();
     const auto made = [&] { return run("shadow-map", box.snapshot, Settings{}, rays); };
     const std::vector<Scatter> one = on_threads(1, made), all = on_threads(3, made);
     for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(one[i].radiance, all[i].radiance);

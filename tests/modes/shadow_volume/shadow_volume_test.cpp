@@ -77,8 +77,8 @@ const Camera cameras[] = {look_at({2.5f, 1.5f, 5}, {0, 1.5f, 0}, {0, 1, 0}, 0.9f
 TEST(ShadowVolume, SunUnderARoofByHand) {
     // Without light-side dimming (the sun is level with the roof's end of the fog) half the path is lit.
     const Box thin{vec3(-4, -0.001f, -1), vec3(4, 0.001f, 1)};
-    const Stage stage = stage_of({homogeneous_medium(0.5f, thin)}, {sun_light({0, -1, 0}, 3)},
-                                 {quad({0, 1, -2}, {5, 0, 0}, {0, 0, 4})});
+    const TestScene stage = make_scene({homogeneous_medium(0.5f, thin)}, {sun_light({0, -1, 0}, 3)},
+                                       {quad({0, 1, -2}, {5, 0, 0}, {0, 0, 4})});
     Picture picture;
     picture.rays.assign(16, {{-4, 0, 0}, {1, 0, 0}, 8});
     picture.view.camera = look_at({-4, 0, 0}, {0, 0, 0}, {0, 1, 0}, 1);
@@ -92,8 +92,8 @@ TEST(ShadowVolume, SunUnderARoofByHand) {
 
 TEST(ShadowVolume, EqualsTheReferenceInEvenFog) {
     for (const Light& light : all_lights()) {
-        const Stage stage =
-            stage_of({homogeneous_medium(0.3f, room, {PhaseKind::henyey_greenstein, 0.5f})}, {light}, furniture());
+        const TestScene stage =
+            make_scene({homogeneous_medium(0.3f, room, {PhaseKind::henyey_greenstein, 0.5f})}, {light}, furniture());
         for (const Camera& camera : cameras) {
             const Picture picture = picture_of(camera, stage.snapshot, 20);
             const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
@@ -114,14 +114,14 @@ TEST(ShadowVolume, HeightFogAmbientAndSeveralMedia) {
     height.optics.emission.radiance = vec3(0.02f, 0.01f, 0);
     Medium other = homogeneous_medium(0.1f, Box{vec3(-1), vec3(1.5f)}, {PhaseKind::rayleigh, 0});
     other.optics.albedo = vec3(0.9f, 0.5f, 0.2f);
-    const Stage stage = stage_of({height, other}, all_lights(), furniture(), vec3(0.1f, 0.2f, 0.3f));
+    const TestScene stage = make_scene({height, other}, all_lights(), furniture(), vec3(0.1f, 0.2f, 0.3f));
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
     EXPECT_LT(rms_difference(drawn("shadow-volume", picture, stage.snapshot, {}), expected) / mean_of(expected), 2e-3);
 }
 
 TEST(ShadowVolume, OrthographicCamerasAndStretchesBehindBlendSurfaces) {
-    const Stage stage = stage_of({homogeneous_medium(0.3f, room)}, all_lights(), furniture());
+    const TestScene stage = make_scene({homogeneous_medium(0.3f, room)}, all_lights(), furniture());
     Camera flat = cameras[0];
     flat.ortho_height = 4;
     const Picture picture = picture_of(flat, stage.snapshot, 20);
@@ -141,9 +141,9 @@ TEST(ShadowVolume, OrthographicCamerasAndStretchesBehindBlendSurfaces) {
 
 TEST(ShadowVolume, SampledFogApproachesTheReference) {
     const auto wavy = [](vec3 p) { return 0.5f + 0.5f * std::sin(9 * p.x) * std::cos(7 * p.y + 4 * p.z); };
-    const Stage stage = stage_of({medium_of(unit_volume(32, wavy), 2)},
-                                 {sun_light({0.4f, -1, 0.2f}, 2), point_light({0.4f, 1.3f, 0.6f}, 1)},
-                                 {box_of({0.2f, 0.7f, 0.2f}, {0.5f, 0.8f, 0.6f})});
+    const TestScene stage = make_scene({medium_of(unit_volume(32, wavy), 2)},
+                                       {sun_light({0.4f, -1, 0.2f}, 2), point_light({0.4f, 1.3f, 0.6f}, 1)},
+                                       {box_of({0.2f, 0.7f, 0.2f}, {0.5f, 0.8f, 0.6f})});
     const Picture picture =
         picture_of(look_at({0.5f, 0.5f, 2.5f}, {0.5f, 0.5f, 0.5f}, {0, 1, 0}, 0.6f), stage.snapshot, 9);
     const std::vector<Scatter> expected = drawn("march", picture, stage.snapshot, exact_settings());
@@ -163,12 +163,12 @@ TEST(ShadowVolume, SampledFogApproachesTheReference) {
     even.of<ShadowVolumeSettings>().fog = ShadowFog::homogeneous;
     EXPECT_EQ(drawn("shadow-volume", picture, stage.snapshot, even)[500].validity, 0);
     const Limitations said = find_mode("shadow-volume").limitations(picture.view, stage.snapshot, even);
-    EXPECT_TRUE(says(said, limitation::drawn_as_homogeneous));
+    EXPECT_TRUE(has_limitation(said, limitation::drawn_as_homogeneous));
 }
 
 TEST(ShadowVolume, EndlessFogAndFarEnds) {
-    const Stage stage =
-        stage_of({homogeneous_medium(0.2f)}, {sun_light({1, -1e-3f, 0}, 2), point_light({0, 3, 0}, 5)}, furniture());
+    const TestScene stage =
+        make_scene({homogeneous_medium(0.2f)}, {sun_light({1, -1e-3f, 0}, 2), point_light({0, 3, 0}, 5)}, furniture());
     Picture picture = picture_of(cameras[0], stage.snapshot, 1e6f);
     for (const Scatter& result : drawn("shadow-volume", picture, stage.snapshot, {})) {
         EXPECT_TRUE(is_finite(result.radiance));
@@ -186,7 +186,7 @@ TEST(ShadowVolume, EndlessFogAndFarEnds) {
 }
 
 TEST(ShadowVolume, ShellsAreALookAndSaySo) {
-    const Stage stage = stage_of({homogeneous_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture());
+    const TestScene stage = make_scene({homogeneous_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture());
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     Settings shells, brighter;
     shells.of<ShadowVolumeSettings>().draw = brighter.of<ShadowVolumeSettings>().draw = ShadowDraw::shells;
@@ -197,15 +197,15 @@ TEST(ShadowVolume, ShellsAreALookAndSaySo) {
     EXPECT_NEAR(mean_of(two) / mean_of(one), 2, 1e-5);
     EXPECT_EQ(one[100].validity, 0);
     const Limitations said = find_mode("shadow-volume").limitations(picture.view, stage.snapshot, shells);
-    EXPECT_TRUE(says(said, limitation::shells));
+    EXPECT_TRUE(has_limitation(said, limitation::shells));
     shells.of<ShadowVolumeSettings>().shell_length = 1e-3f; // nothing shows that near its occluder
     EXPECT_LT(mean_of(drawn("shadow-volume", picture, stage.snapshot, shells)), 0.01 * mean_of(one));
 }
 
 TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
     const vec3 ambient(0.1f, 0.2f, 0.3f);
-    const Stage stage =
-        stage_of({homogeneous_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture(), ambient);
+    const TestScene stage =
+        make_scene({homogeneous_medium(0.3f, room)}, {sun_light({0.4f, -1, 0.2f}, 2)}, furniture(), ambient);
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     Settings shells, measured;
     shells.of<ShadowVolumeSettings>().draw = measured.of<ShadowVolumeSettings>().draw = ShadowDraw::shells;
@@ -224,21 +224,21 @@ TEST(ShadowVolume, ShellsKeepAmbientLightAndScaleWithTheScene) {
 TEST(ShadowVolume, LimitationsNameSoftLightsAndAlpha) {
     Light soft = sun_light({0, -1, 0});
     soft.angle = 0.01f;
-    Stage stage = stage_of({homogeneous_medium(0.1f, room)}, {soft}, furniture());
+    TestScene stage = make_scene({homogeneous_medium(0.1f, room)}, {soft}, furniture());
     const auto said = [](const Snapshot& snapshot) {
         return find_mode("shadow-volume").limitations(View{}, snapshot, {});
     };
-    EXPECT_TRUE(says(said(stage.snapshot), limitation::hard_shadows));
-    EXPECT_FALSE(says(said(stage.snapshot), limitation::no_alpha_shadows));
+    EXPECT_TRUE(has_limitation(said(stage.snapshot), limitation::hard_shadows));
+    EXPECT_FALSE(has_limitation(said(stage.snapshot), limitation::no_alpha_shadows));
     Material glass;
     glass.alpha_mode = AlphaMode::blend, glass.alpha = 0.5f;
     stage.scene->materials.push_back(glass), stage.scene->meshes[0].material = 0;
     stage.snapshot.occluders = Occluders::make(*stage.scene, 0, nullptr);
-    EXPECT_TRUE(says(said(stage.snapshot), limitation::no_alpha_shadows));
+    EXPECT_TRUE(has_limitation(said(stage.snapshot), limitation::no_alpha_shadows));
 }
 
 TEST(ShadowVolume, PartsOfTheLightsAddUpAndThreadsDoNotMatter) {
-    const Stage stage = stage_of({homogeneous_medium(0.3f, room)}, all_lights(), furniture());
+    const TestScene stage = make_scene({homogeneous_medium(0.3f, room)}, all_lights(), furniture());
     const Picture picture = picture_of(cameras[0], stage.snapshot, 20);
     const std::vector<Scatter> alone = drawn("shadow-volume", picture, stage.snapshot, {});
     const ScatterFunction scatter = find_mode("shadow-volume").prepare(picture.view, stage.snapshot, {}, nullptr);

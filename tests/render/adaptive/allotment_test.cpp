@@ -42,7 +42,7 @@ TEST(Allotment, FollowsTheStandardDeviation) {
 TEST(Allotment, KnowsHowManySamplesTheVariancesStandFor) {
     const Allotment allotment = allot(two_columns(1, 9), 5, {0.02, endless}, 1, 2);
     EXPECT_NEAR(allotment.samples.at(1, 0), 1500, 1500 * near);
-    Image<float> taken = samples_alike(two_columns(1, 1), 3);
+    Image<float> taken = uniform_samples(two_columns(1, 1), 3);
     for (int row = 0; row < many_rows; ++row) taken.at(1, row) = 27;
     const Allotment uneven = allot(two_columns(1, 1), taken, {0.06, endless}, 1, 2);
     EXPECT_NEAR(uneven.samples.at(0, 0), 100, 100 * near) << "27 samples with a variance of 1 spread as one of 27";
@@ -116,8 +116,10 @@ TEST(Allotment, IsRenderedInPartsThatAddUp) {
     Allotment allotment;
     allotment.samples = Image<float>({2, 1});
     allotment.samples.pixels = {99.5f, 298.5f};
-    const AllottedPart whole = part_of(allotment, 0, 1, 2, false), half = part_of(allotment, 0, 0.5, 2, false),
-                       rest = part_of(allotment, 0.5, 1, 2, false), least = part_of(allotment, 0, 1e-6, 2, false);
+    const AllottedPart whole = allotted_part(allotment, 0, 1, 2, false),
+                       half = allotted_part(allotment, 0, 0.5, 2, false),
+                       rest = allotted_part(allotment, 0.5, 1, 2, false),
+                       least = allotted_part(allotment, 0, 1e-6, 2, false);
     EXPECT_EQ(whole.factors->at({0, 0}), 52) << "50 in whole batches";
     EXPECT_EQ(whole.factors->at({1, 0}), 152);
     EXPECT_EQ(half.factors->at({0, 0}), 28);
@@ -126,7 +128,8 @@ TEST(Allotment, IsRenderedInPartsThatAddUp) {
     EXPECT_FLOAT_EQ(rest.shares.shares.at(1, 0), 0.5f);
     EXPECT_EQ(least.factors->at({1, 0}), 1);
     EXPECT_FLOAT_EQ(least.shares.shares.at(1, 0), 1.0f);
-    EXPECT_EQ(part_of(allotment, 1e-6, 2e-6, 2, false).factors->at({1, 0}), 0) << "rounding up has given it already";
+    EXPECT_EQ(allotted_part(allotment, 1e-6, 2e-6, 2, false).factors->at({1, 0}), 0)
+        << "rounding up has given it already";
 
     View view = plain_view({8, 4}, 2);
     view.allotted = whole.factors;
@@ -145,7 +148,7 @@ TEST(Allotment, TilesOfManySamplesHaveMoreBatches) {
     EXPECT_EQ(batches_of(view, {8, 0}), 8);
     EXPECT_EQ(batches_of(view, {12, 0}), 2) << "no whole batches";
     std::set<uint32_t> sequences;
-    for (int sample = 0; sample < 16; ++sample) sequences.insert(sample_place(view, {8, 0}, sample).sequence);
+    for (int sample = 0; sample < 16; ++sample) sequences.insert(sample_index(view, {8, 0}, sample).sequence);
     EXPECT_EQ(sequences.size(), 8u);
 }
 

@@ -71,9 +71,9 @@ TEST(Contest, NoneIsMeasuredWhereThatWouldTakeMoreThanItMay) {
     const LitBox box;
     const Goal goal{0.05, 0, Quality::preview, StepClock{}};
     const double start = goal.clock();
-    const Contender main = measured_alone(main_mode(), box.view, box.snapshot, box.settings, goal, plain);
+    const Contender main = sole_contender(main_mode(), box.view, box.snapshot, box.settings, goal, plain);
     const double alone = goal.clock() - start;
-    ASSERT_TRUE(main.gets_there());
+    ASSERT_TRUE(main.reaches_goal());
     const auto measured = [&](double share_of_alone) {
         const double share = share_of_alone * alone / main.seconds;
         return hold_contest(modes(), box.view, box.snapshot, box.settings, goal, share, plain).contenders.size();
@@ -86,8 +86,8 @@ TEST(Contest, AVeryLongForecastGrantsTheOthersNoMoreThanTwentyTimesWhatIsKnown) 
     const LitBox box;
     const Goal goal{0.000001, 0, Quality::preview, StepClock{}};
     const double start = goal.clock();
-    const Contender main = measured_alone(main_mode(), box.view, box.snapshot, box.settings, goal, plain);
-    ASSERT_TRUE(main.gets_there());
+    const Contender main = sole_contender(main_mode(), box.view, box.snapshot, box.settings, goal, plain);
+    ASSERT_TRUE(main.reaches_goal());
     ASSERT_GT(main.seconds, 40 * (goal.clock() - start));
     const auto measured = [&](double share) {
         return hold_contest(modes(), box.view, box.snapshot, box.settings, goal, share, plain).contenders.size();

@@ -38,7 +38,7 @@ Layers exact_picture(const Example& example, uint32_t seed, int samples) {
     View view = example.view;
     view.pixel_samples = samples, view.seed = seed;
     FrameStats stats;
-    return render_frame(find_mode("march"), view, example.snapshot, truth_of(example.settings), {}, stats);
+    return render_frame(find_mode("march"), view, example.snapshot, truth_settings(example.settings), {}, stats);
 }
 
 Halves exact_halves(const Example& example, int samples) {
@@ -118,7 +118,7 @@ TEST(Goal, CandidatesGetFinerAndTheTruthIsTheLast) {
     }
     EXPECT_GE(compared, 3);
     for (const SettingRow& row : setting_rows())
-        EXPECT_EQ(row.get(all.back().settings), row.get(truth_of(settings))) << row.name;
+        EXPECT_EQ(row.get(all.back().settings), row.get(truth_settings(settings))) << row.name;
 }
 
 // Steps are what candidates cost on the same rays, but for the last, whose are of another kind.
@@ -150,8 +150,8 @@ TEST(Goal, RowsThatAreSetStay) {
         EXPECT_EQ(candidate.settings.terms.light_resolution, 20);
         EXPECT_FALSE(candidate.settings.terms.ambient);
     }
-    EXPECT_EQ(truth_of(settings).terms.light, LightTransmittance::marched);
-    EXPECT_FALSE(truth_of(settings).terms.ambient);
+    EXPECT_EQ(truth_settings(settings).terms.light, LightTransmittance::marched);
+    EXPECT_FALSE(truth_settings(settings).terms.ambient);
 }
 
 TEST(Goal, ACoarseRowThatIsSetIsMeasuredAndMissesTheTarget) {
@@ -174,8 +174,8 @@ TEST(Goal, ChecksAreIndependentOfEachOtherAndOfTheChoice) {
     ASSERT_GT(choice.measured.integrator.value, 0);
     std::vector<double> bounds{choice.measured.integrator.bound};
     for (const uint32_t salt : {1u, 2u}) {
-        const Choice after = checked(choice, {choice.scout->layers, {}, 4, 4}, infinity, march, example.view,
-                                     example.snapshot, example.settings, goal, salt, {});
+        const Choice after = check_choice(choice, {choice.scout->layers, {}, 4, 4}, infinity, march, example.view,
+                                          example.snapshot, example.settings, goal, salt, {});
         EXPECT_EQ(after.candidate.name, choice.candidate.name);
         EXPECT_EQ(std::ranges::count(bounds, after.measured.integrator.bound), 0) << salt;
         bounds.push_back(after.measured.integrator.bound);
@@ -188,9 +188,9 @@ TEST(Goal, AFinerCandidateIsNamedOnlyWhereOneMayBegin) {
     const Choice choice = choose(main_mode(), example.view, example.snapshot, example.settings, goal, 0, {});
     ASSERT_GT(choice.measured.integrator.value, 0);
     goal.error = 0.1 * std::sqrt(choice.measured.integrator.value);
-    const auto after = [&](bool may_begin_anew) {
-        return checked(choice, {choice.scout->layers, {}, 4, 4, may_begin_anew}, infinity, main_mode(), example.view,
-                       example.snapshot, example.settings, goal, 1, {});
+    const auto after = [&](bool may_restart) {
+        return check_choice(choice, {choice.scout->layers, {}, 4, 4, may_restart}, infinity, main_mode(), example.view,
+                            example.snapshot, example.settings, goal, 1, {});
     };
     EXPECT_NE(after(true).candidate.name, choice.candidate.name);
     const Choice kept = after(false);
@@ -204,8 +204,8 @@ TEST(Goal, WhatSeemsToMissTheTargetIsLookedAtNoLongerThanAnotherModeTakes) {
     Goal goal{1, 0, Quality::preview, steady_seconds};
     const Choice choice = choose(main_mode(), example.view, example.snapshot, example.settings, goal, 0, {});
     const auto integrator = [&] {
-        return checked(choice, {choice.scout->layers, {}, 4, 4}, infinity, main_mode(), example.view, example.snapshot,
-                       example.settings, goal, 1, {})
+        return check_choice(choice, {choice.scout->layers, {}, 4, 4}, infinity, main_mode(), example.view,
+                            example.snapshot, example.settings, goal, 1, {})
             .measured.integrator;
     };
     goal.error = std::sqrt(choice.measured.integrator.value), goal.other_work = 0;

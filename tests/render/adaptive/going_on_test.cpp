@@ -57,11 +57,11 @@ TEST(GoingOn, TakesThePlacesThatTheEarlierPictureLeft) {
         std::set<std::pair<uint32_t, uint32_t>> parts, together;
         for (const View* view : {&first, &second})
             for (int sample = 0; sample < samples_of(*view, pixel); ++sample) {
-                const SamplePlace place = sample_place(*view, pixel, sample);
+                const SampleIndex place = sample_index(*view, pixel, sample);
                 EXPECT_TRUE(parts.insert({place.sequence, place.index}).second) << "taken twice";
             }
         for (int sample = 0; sample < samples_of(whole, pixel); ++sample) {
-            const SamplePlace place = sample_place(whole, pixel, sample);
+            const SampleIndex place = sample_index(whole, pixel, sample);
             together.insert({place.sequence, place.index});
         }
         EXPECT_EQ(parts, together) << pixel.x << " " << pixel.y;
@@ -129,7 +129,8 @@ TEST(GoingOn, IsForPicturesWhoseNoiseManyPixelsHold) {
     const auto views_of = [](TargetRounds rounds) {
         std::vector<View> views;
         for (const double from : {0.0, 0.4}) {
-            const AllottedPart part = part_of(*rounds.allotment, from, from + 0.4, rounds.unit(), rounds.goes_on());
+            const AllottedPart part =
+                allotted_part(*rounds.allotment, from, from + 0.4, rounds.unit(), rounds.continues());
             double work = 0.4;
             views.push_back(rounds.round_view(work, from > 0 ? 5 : 4, &part));
         }
@@ -138,12 +139,12 @@ TEST(GoingOn, IsForPicturesWhoseNoiseManyPixelsHold) {
     const std::vector<View> many = views_of(rounds_with(march, 300, 1));
     EXPECT_EQ(many[0].seed, many[1].seed);
     EXPECT_EQ(batches_of(many[1], {0, 0}), 2);
-    EXPECT_EQ(sample_place(many[1], {0, 0}, 0).index, 16u);
+    EXPECT_EQ(sample_index(many[1], {0, 0}, 0).index, 16u);
     for (const auto& views : {views_of(rounds_with(march, 200, 1)), views_of(rounds_with(path, 300, 1)),
                               views_of(rounds_with(march, 300, 64))}) {
         EXPECT_NE(views[0].seed, views[1].seed);
         EXPECT_GE(batches_of(views[1], {0, 0}), 8);
-        EXPECT_EQ(sample_place(views[1], {0, 0}, 0).index, 0u);
+        EXPECT_EQ(sample_index(views[1], {0, 0}, 0).index, 0u);
     }
 }
 }

@@ -209,9 +209,9 @@ TEST(Orders, HaveTheSameBitsForAnyThreadCount) {
 }
 
 TEST(Orders, LeaveTheRestOfAnErrorToNoise) {
-    EXPECT_NEAR(*error_beside({0.02, 0.03}, 0.05), 0.04, 1e-12);
-    EXPECT_EQ(error_beside({0.02, 0.06}, 0.05), std::nullopt);
-    EXPECT_EQ(error_beside({0.02, 0.0499}, 0.05), std::nullopt) << "too little is left to reach";
+    EXPECT_NEAR(*remaining_error({0.02, 0.03}, 0.05), 0.04, 1e-12);
+    EXPECT_EQ(remaining_error({0.02, 0.06}, 0.05), std::nullopt);
+    EXPECT_EQ(remaining_error({0.02, 0.0499}, 0.05), std::nullopt) << "too little is left to reach";
 }
 
 TEST(Orders, CountInWhatATargetPromises) {

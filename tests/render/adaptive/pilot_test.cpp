@@ -30,7 +30,7 @@ View view_of(ivec2 size) {
     return view;
 }
 
-Settings truth() { return truth_of(Settings{}); }
+Settings truth() { return truth_settings(Settings{}); }
 
 Pilot pilot_of(const View& view, const Snapshot& snapshot, TileChances chances, uint32_t salt = 0) {
     const Settings exact = truth();
@@ -73,7 +73,7 @@ TEST(TileChances, DrawnTilesStandForAll) {
         double sum = 0;
         for (const DrawnTile& tile : draw_tiles(tiles, 20, seed)) {
             EXPECT_LE(tile.chance, 1);
-            sum += tile.stands_for * value(tile.corner);
+            sum += tile.weight * value(tile.corner);
         }
         mean += sum / drawings, squares += sum * sum / drawings;
     }
@@ -88,7 +88,7 @@ TEST(TileChances, ALikelyTileIsDrawnForCertain) {
         const std::vector<DrawnTile> drawn = draw_tiles(tiles, 16, seed);
         const auto found = std::ranges::find(drawn, ivec2(28, 12), &DrawnTile::corner);
         ASSERT_NE(found, drawn.end());
-        EXPECT_EQ(found->stands_for, 1);
+        EXPECT_EQ(found->weight, 1);
     }
 }
 
@@ -108,7 +108,8 @@ TEST(TileChances, EvenOnesDrawALampInViewForCertain) {
     View view = view_of({640, 360});
     view.filter = PixelFilter::blackman_harris;
     const vec3 place(0.3f, -0.7f, 0);
-    const TileChances tiles = even_chances(view, snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(place)}));
+    const TileChances tiles =
+        uniform_chances(view, snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(place)}));
     EXPECT_NEAR(std::accumulate(tiles.chances.begin(), tiles.chances.end(), 0.0), 1, 1e-9);
     EXPECT_GE(*std::ranges::min_element(tiles.chances), 0.5 / static_cast<double>(tiles.chances.size()) - 1e-12);
     const ivec2 lamp = ivec2(*pixel_of(view.camera, view.size, place)) / 4 * 4;
@@ -116,9 +117,9 @@ TEST(TileChances, EvenOnesDrawALampInViewForCertain) {
         const std::vector<DrawnTile> drawn = draw_tiles(tiles, drawing_tiles, seed);
         const auto found = std::ranges::find(drawn, lamp, &DrawnTile::corner);
         ASSERT_NE(found, drawn.end());
-        EXPECT_EQ(found->stands_for, 1);
+        EXPECT_EQ(found->weight, 1);
     }
-    const TileChances dark = even_chances(view, snapshot_of({homogeneous_medium(0.1f, room)}, {}));
+    const TileChances dark = uniform_chances(view, snapshot_of({homogeneous_medium(0.1f, room)}, {}));
     EXPECT_EQ(std::ranges::min(dark.chances), std::ranges::max(dark.chances));
 }
 
@@ -136,7 +137,7 @@ TEST(TileChances, FollowWhatAnotherTechniqueShows) {
 TEST(Pilot, ATinyPictureIsFollowedWhole) {
     const View view = view_of({3, 2});
     const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light({0, 0, 0})});
-    const Pilot pilot = pilot_of(view, snapshot, even_chances(view, snapshot));
+    const Pilot pilot = pilot_of(view, snapshot, uniform_chances(view, snapshot));
     EXPECT_EQ(pilot.tiles.size(), 1u);
     EXPECT_TRUE(pilot.is_full());
 }
@@ -144,7 +145,7 @@ TEST(Pilot, ATinyPictureIsFollowedWhole) {
 TEST(Pilot, GrowsByIndependentDrawings) {
     const View view = view_of({160, 90});
     const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(out_of_view)});
-    Pilot pilot = pilot_of(view, snapshot, even_chances(view, snapshot));
+    Pilot pilot = pilot_of(view, snapshot, uniform_chances(view, snapshot));
     EXPECT_EQ(pilot.tiles.size(), drawing_tiles);
     grow(pilot), grow(pilot);
     EXPECT_EQ(pilot.truth.size(), pilot.tiles.size() * pilot_values);
@@ -152,9 +153,9 @@ TEST(Pilot, GrowsByIndependentDrawings) {
     grow(pilot, true);
     EXPECT_EQ(pilot.samples(), 2 * samples);
     double stood_for = 0;
-    for (const DrawnTile& tile : pilot.tiles) stood_for += tile.stands_for;
+    for (const DrawnTile& tile : pilot.tiles) stood_for += tile.weight;
     EXPECT_NEAR(stood_for, pilot.all(), 1e-6);
-    const Pilot other = pilot_of(view, snapshot, even_chances(view, snapshot), 1);
+    const Pilot other = pilot_of(view, snapshot, uniform_chances(view, snapshot), 1);
     EXPECT_NE(other.tiles[0].corner, pilot.tiles[0].corner);
     EXPECT_NE(other.view.seed, pilot.view.seed);
 }
@@ -162,16 +163,16 @@ TEST(Pilot, GrowsByIndependentDrawings) {
 TEST(Pilot, KeepsToItsWork) {
     const View view = view_of({160, 90});
     const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(out_of_view)});
-    const double all = pilot_of(view, snapshot, even_chances(view, snapshot)).cost.work;
+    const double all = pilot_of(view, snapshot, uniform_chances(view, snapshot)).cost.work;
     const Settings exact = truth();
     for (const double share : {0.0, 0.5, 2.0}) {
-        const Pilot pilot = make_pilot(main_mode(), view, snapshot, &exact, even_chances(view, snapshot), 0, plain,
+        const Pilot pilot = make_pilot(main_mode(), view, snapshot, &exact, uniform_chances(view, snapshot), 0, plain,
                                        nullptr, {}, share * all);
         EXPECT_LT(pilot.cost.work, std::max(share, 0.25) * all * 1.2); // eight tiles at least
         EXPECT_GT(pilot.cost.work, std::min(share, 1.0) * all * 0.7);
         EXPECT_EQ(pilot.truth.size(), pilot.tiles.size() * pilot_values);
         double stood_for = 0;
-        for (const DrawnTile& tile : pilot.tiles) stood_for += tile.stands_for;
+        for (const DrawnTile& tile : pilot.tiles) stood_for += tile.weight;
         EXPECT_NEAR(stood_for, pilot.all(), 1e-6);
     }
 }
@@ -182,13 +183,13 @@ TEST(Pilot, SeesWhatIsWrongInALampsPixelAlone) {
     const vec3 place(0.3f, -0.7f, 0);
     const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {point_light(place)});
     const Pilot pilot = pilot_of(view, snapshot, chances_in(scout_of(view, snapshot)->layers));
-    const Measured right = measure(pilot, main_mode(), truth(), steady_seconds);
-    const Measured wrong = measure(pilot, bright_beside(place), truth(), steady_seconds);
+    const Measurement right = measure(pilot, main_mode(), truth(), steady_seconds);
+    const Measurement wrong = measure(pilot, bright_beside(place), truth(), steady_seconds);
     EXPECT_EQ(right.integrator.bound, 0);
 
     // Against whole pictures through the same rays, which differ there only.
     FrameStats stats;
-    const View even = even_view(view, 16, 1);
+    const View even = uniform_view(view, 16, 1);
     const Layers one = render_frame(main_mode(), even, snapshot, truth(), plain, stats);
     const Layers other = render_frame(bright_beside(place), even, snapshot, truth(), plain, stats);
     double squares = 0, mean = 0, differing = 0;
@@ -299,8 +300,8 @@ TEST(Goal, DoubtsTakeNoMoreThanThePictureTook) {
     const Noise noise{0.04, 0.049, 0.045};
     const auto rays_for = [&](double samples) {
         flickering_rays = 0;
-        checked(choice, {choice.scout->layers, noise, samples, samples, false}, infinity, mode, view, snapshot,
-                settings, goal, 1, plain);
+        check_choice(choice, {choice.scout->layers, noise, samples, samples, false}, infinity, mode, view, snapshot,
+                     settings, goal, 1, plain);
         return static_cast<double>(flickering_rays) / (160 * 90);
     };
     EXPECT_LE(rays_for(1), 1.2 + 2.0 * drawing_tiles * 16 / (160 * 90)) << "and the first look";

@@ -38,15 +38,15 @@ TEST(Planned, StepsAndGridsCountWithoutATarget) {
     const Snapshot snapshot = milk();
     const View view = view_of_milk();
     const Settings settings = coarse_settings();
-    const PlannedError planned = shared_error(main_mode(), view, snapshot, settings, {});
+    const PlannedError planned = systematic_error(main_mode(), view, snapshot, settings, {});
     ASSERT_TRUE(planned.integrator && planned.orders);
     EXPECT_GT(planned.integrator->error.error, 0);
     EXPECT_GT(planned.orders->pixels.bound, 0);
     FrameStats stats = with_noise(0.1);
-    judge_planned(planned, main_mode(), view, snapshot, settings, {}, {}, stats);
+    add_planned_error(planned, main_mode(), view, snapshot, settings, {}, {}, stats);
     EXPECT_EQ(stats.error()->bound, std::hypot(0.1, planned.integrator->error.bound, planned.orders->pixels.bound));
 
-    const PlannedError of_path = shared_error(mode_of_all_orders(), view, snapshot, settings, {});
+    const PlannedError of_path = systematic_error(mode_of_all_orders(), view, snapshot, settings, {});
     EXPECT_FALSE(of_path.integrator || of_path.orders) << "its only error is noise";
 }
 
@@ -58,7 +58,7 @@ TEST(Planned, FinishedImagesOfATargetAreMeasured) {
     planned.target = 0.1, planned.integrator = Integrator{{}, "too good", settings};
     FrameStats stats;
     const Layers image = render_frame(main_mode(), view, snapshot, settings, {}, stats);
-    judge_planned(planned, main_mode(), view, snapshot, settings, image, {}, stats);
+    add_planned_error(planned, main_mode(), view, snapshot, settings, image, {}, stats);
     EXPECT_GT(stats.integrator->error.error, 0);
     EXPECT_EQ(stats.integrator->candidate, "too good");
 }
@@ -66,9 +66,9 @@ TEST(Planned, FinishedImagesOfATargetAreMeasured) {
 TEST(Planned, GroupsThatLackFollowFromNoise) {
     PlannedError planned;
     planned.target = 0.03;
-    EXPECT_EQ(groups_lacking(planned, with_noise(0.03), 8), 0);
-    EXPECT_EQ(groups_lacking(planned, with_noise(0.06), 8), std::ceil(1.05 * 8 * 4) - 8);
-    EXPECT_EQ(groups_lacking({}, with_noise(1), 8), 0) << "no target was asked for";
+    EXPECT_EQ(missing_groups(planned, with_noise(0.03), 8), 0);
+    EXPECT_EQ(missing_groups(planned, with_noise(0.06), 8), std::ceil(1.05 * 8 * 4) - 8);
+    EXPECT_EQ(missing_groups({}, with_noise(1), 8), 0) << "no target was asked for";
 }
 
 TEST(Planned, WhatSamplesDoNotRemoveIsLeftOutOfThem) {
@@ -76,9 +76,9 @@ TEST(Planned, WhatSamplesDoNotRemoveIsLeftOutOfThem) {
     planned.target = 0.05;
     FrameStats stats = with_noise(0.05);
     stats.integrator = Integrator{{0.02, 0.03}, "draft", {}}; // 0.04 are left
-    EXPECT_EQ(groups_lacking(planned, stats, 8), std::ceil(1.05 * 8 * 25 / 16.0) - 8);
+    EXPECT_EQ(missing_groups(planned, stats, 8), std::ceil(1.05 * 8 * 25 / 16.0) - 8);
     stats.integrator->error.bound = 0.05;
-    EXPECT_EQ(groups_lacking(planned, stats, 8), infinity);
+    EXPECT_EQ(missing_groups(planned, stats, 8), infinity);
 }
 }
 }

@@ -48,8 +48,9 @@ double error_of_moments(Light shown, int moments) {
     const Blurred blurred(shown, moments);
     const Settings settings;
     const Prepared prepared = prepare_frame(blurred.mode, blurred.view, blurred.snapshot, settings, nullptr);
-    const SquaredError error = moments_error(blurred.mode, blurred.view, blurred.snapshot, settings, prepared,
-                                             even_chances(blurred.view, blurred.snapshot), 0.01, false, FrameOptions{});
+    const SquaredError error =
+        moments_error(blurred.mode, blurred.view, blurred.snapshot, settings, prepared,
+                      uniform_chances(blurred.view, blurred.snapshot), 0.01, false, FrameOptions{});
     EXPECT_GE(error.bound, error.value);
     return std::sqrt(error.value);
 }

@@ -41,11 +41,11 @@ TEST(ToTarget, SamplesComeInBatches) {
 
 TEST(ToTarget, RefusesModesWithOtherErrors) {
     EXPECT_NO_THROW(check_target(own_mode(prepare_random)));
-    const std::string text = error_text(ExitCode::usage, [] { check_target(mode_of(prepare_random)); });
+    const std::string text = error_message(ExitCode::usage, [] { check_target(mode_of(prepare_random)); });
     EXPECT_NE(text.find("'test'"), text.npos) << text;
     Mode biased = own_mode(prepare_random);
     biased.accuracy = Accuracy::single_scattering;
-    error_text(ExitCode::usage, [&] { check_target(biased); });
+    error_message(ExitCode::usage, [&] { check_target(biased); });
 }
 
 TEST(ToTarget, KeepsItsPromise) {

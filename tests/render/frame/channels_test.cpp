@@ -39,7 +39,7 @@ struct Seen {
 };
 
 void see(const std::string& text, std::string_view mode, Seen& seen, bool background = true, int samples = 2) {
-    const Scratch folder;
+    const TempFolder folder;
     seen.scene = load_scene(folder.put("scene.json", text));
     seen.snapshot = make_snapshot(seen.scene, moment_of(seen.scene, 1));
     View view = plain_view({8, 8}, samples);

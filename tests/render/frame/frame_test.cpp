@@ -45,11 +45,11 @@ TEST(Frame, CompositesFogBetweenTransparentSurfaces) {
     snapshot.background.color = behind;
 
     View view = plain_view({8, 8}, 2, 2.0f);
-    const Layers layers = rendered(mode_of(prepare_glow), view, snapshot);
+    const Layers layers = rendered(mode_of(prepare_emissive), view, snapshot);
     view.background = false;
-    const Layers bare = rendered(mode_of(prepare_glow), view, snapshot);
+    const Layers bare = rendered(mode_of(prepare_emissive), view, snapshot);
     const float t1 = std::exp(-2 * extinction), t2 = std::exp(-3 * extinction), t3 = std::exp(-4 * extinction);
-    const vec3 fog1 = glow * (1 - t1), fog2 = glow * (1 - t2), fog3 = glow * (1 - t3);
+    const vec3 fog1 = fog_radiance * (1 - t1), fog2 = fog_radiance * (1 - t2), fog3 = fog_radiance * (1 - t3);
     const vec3 beyond2 = fog3 + t3 * behind, beyond1 = fog2 + t2 * (0.25f * second + 0.75f * beyond2);
     const float through = t1 * 0.5f * t2 * 0.75f * t3;
     for (int i = 0; i < 64; ++i) {
@@ -70,9 +70,9 @@ TEST(Frame, OpaqueSurfacesHideWhatIsBehind) {
     add_plane(scene, -6, 50, vec3(9));
     Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.1f)});
     snapshot.background.color = vec3(5);
-    const Layers layers = rendered(mode_of(prepare_glow), plain_view({4, 4}, 1, 1.0f), snapshot);
+    const Layers layers = rendered(mode_of(prepare_emissive), plain_view({4, 4}, 1, 1.0f), snapshot);
     const float t = std::exp(-0.4f);
-    expect_near(layers.color.at(1, 2), glow * (1 - t) + t * vec3(2), 1e-5f);
+    expect_near(layers.color.at(1, 2), fog_radiance * (1 - t) + t * vec3(2), 1e-5f);
     EXPECT_EQ(layers.alpha.at(1, 2), 1);
     EXPECT_FLOAT_EQ(layers.transmittance.at(1, 2), t);
 }
@@ -81,7 +81,7 @@ TEST(Frame, ABackgroundCoversWhatItIsSeenIn) {
     const Scene scene;
     Snapshot snapshot = snapshot_of(scene);
     snapshot.background.color = vec3(0.25f, 0.5f, 1);
-    const Layers layers = rendered(mode_of(prepare_glow), plain_view({5, 3}, 3), snapshot);
+    const Layers layers = rendered(mode_of(prepare_emissive), plain_view({5, 3}, 3), snapshot);
     for (size_t i = 0; i < layers.color.pixels.size(); ++i) {
         expect_near(layers.color.pixels[i], snapshot.background.color, 1e-6f);
         EXPECT_EQ(layers.alpha.pixels[i], 1);
@@ -91,12 +91,12 @@ TEST(Frame, ABackgroundCoversWhatItIsSeenIn) {
     // Left out, or not there, it does not. One that the scene says is black is there.
     View view = plain_view({5, 3}, 3);
     view.background = false;
-    EXPECT_EQ(rendered(mode_of(prepare_glow), view, snapshot).alpha.at(2, 1), 0);
-    EXPECT_EQ(rendered(mode_of(prepare_glow), view, snapshot).color.at(2, 1), vec3(0));
+    EXPECT_EQ(rendered(mode_of(prepare_emissive), view, snapshot).alpha.at(2, 1), 0);
+    EXPECT_EQ(rendered(mode_of(prepare_emissive), view, snapshot).color.at(2, 1), vec3(0));
     view.background = true, snapshot.background.color = vec3(0);
-    EXPECT_EQ(rendered(mode_of(prepare_glow), view, snapshot).alpha.at(2, 1), 0);
+    EXPECT_EQ(rendered(mode_of(prepare_emissive), view, snapshot).alpha.at(2, 1), 0);
     snapshot.background.stated = true;
-    EXPECT_EQ(rendered(mode_of(prepare_glow), view, snapshot).alpha.at(2, 1), 1);
+    EXPECT_EQ(rendered(mode_of(prepare_emissive), view, snapshot).alpha.at(2, 1), 1);
 }
 
 namespace {
@@ -121,10 +121,10 @@ TEST(Frame, LayersAddUpBitForBit) {
     View view = plain_view({33, 21}, 6);
     view.camera.far = 9;
     FrameStats stats;
-    const Layers plain = rendered(mode_of(prepare_glow), view, snapshot, stats);
-    Layers one = rendered(mode_of(prepare_glow), view, snapshot, stats, true);
+    const Layers plain = rendered(mode_of(prepare_emissive), view, snapshot, stats);
+    Layers one = rendered(mode_of(prepare_emissive), view, snapshot, stats, true);
     view.seed = 1, view.pixel_samples = 4;
-    const Layers other = rendered(mode_of(prepare_glow), view, snapshot, stats, true);
+    const Layers other = rendered(mode_of(prepare_emissive), view, snapshot, stats, true);
     expect_sums(one);
     EXPECT_GT(max_component(one.surface.at(16, 10)), 0);
     EXPECT_GT(max_component(one.background.at(16, 10)), 0);
@@ -135,7 +135,7 @@ TEST(Frame, LayersAddUpBitForBit) {
 
     // Each is the same whether the background counts or not.
     view.background = false;
-    const Layers bare = rendered(mode_of(prepare_glow), view, snapshot, stats, true);
+    const Layers bare = rendered(mode_of(prepare_emissive), view, snapshot, stats, true);
     expect_sums(bare);
     EXPECT_TRUE(same_bits(bare.surface, other.surface));
     EXPECT_TRUE(same_bits(bare.inscatter, other.inscatter));
@@ -146,8 +146,8 @@ TEST(Frame, FogWithoutEndHidesTheBackground) {
     const Scene scene;
     Snapshot snapshot = snapshot_of(scene, {homogeneous_medium(0.02f)});
     snapshot.background.color = vec3(100);
-    const Layers layers = rendered(mode_of(prepare_glow), plain_view({4, 4}, 1), snapshot);
-    expect_near(layers.color.at(2, 2), glow, 1e-6f);
+    const Layers layers = rendered(mode_of(prepare_emissive), plain_view({4, 4}, 1), snapshot);
+    expect_near(layers.color.at(2, 2), fog_radiance, 1e-6f);
     EXPECT_NEAR(layers.alpha.at(2, 2), 1, 1e-6f);
 }
 
@@ -187,7 +187,7 @@ TEST(Frame, KeepsBetweenNearAndFar) {
 
     // Beyond the far plane there are no surfaces and no fog, in any direction.
     view.camera.near = 5, view.camera.far = 8;
-    layers = rendered(mode_of(prepare_glow), view, snapshot);
+    layers = rendered(mode_of(prepare_emissive), view, snapshot);
     EXPECT_LT(layers.alpha.at(1, 1), 0.65f);
     EXPECT_TRUE(std::isinf(layers.depth.at(0, 0)));
     const Ray corner = camera_ray(view.camera, view.size, sample_point(view, {0, 0}, 0).position);
@@ -353,7 +353,7 @@ TEST(Frame, SplitsTheLightByName) {
         snapshot.lights.push_back(light);
     }
     FrameStats stats;
-    const Layers layers = rendered(mode_of(prepare_glow), plain_view({9, 9}, 2), snapshot, stats, true);
+    const Layers layers = rendered(mode_of(prepare_emissive), plain_view({9, 9}, 2), snapshot, stats, true);
     ASSERT_EQ(layers.lights.size(), 3u);
     EXPECT_EQ(layers.lights[0].first, "key");
     EXPECT_EQ(layers.lights[1].first, "dark");

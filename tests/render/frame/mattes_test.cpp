@@ -34,7 +34,7 @@ Layers rendered(const Snapshot& snapshot, bool background = true, bool parts = f
     View view = plain_view({8, 8}, 2, 2.0f);
     view.background = background, view.fog_parts = parts;
     FrameStats stats;
-    return render_frame(mode_of(prepare_glow), view, snapshot, Settings{}, FrameOptions{}, stats);
+    return render_frame(mode_of(prepare_emissive), view, snapshot, Settings{}, FrameOptions{}, stats);
 }
 
 const float t1 = std::exp(-2 * extinction), t2 = std::exp(-3 * extinction);
@@ -45,7 +45,7 @@ TEST(Mattes, HoldOutAllBehindThem) {
     for (const bool background : {true, false}) {
         const Layers layers = rendered(held.snapshot, background);
         for (int i = 0; i < 64; ++i) {
-            expect_near(layers.color.pixels[i], glow * (1 - t1), 1e-5f);
+            expect_near(layers.color.pixels[i], fog_radiance * (1 - t1), 1e-5f);
             EXPECT_NEAR(layers.alpha.pixels[i], 1 - t1, 1e-6f);
             EXPECT_NEAR(layers.depth.pixels[i], 2, 1e-5f);
             EXPECT_NEAR(layers.transmittance.pixels[i], t1, 1e-6f);
@@ -59,7 +59,7 @@ TEST(Mattes, BehindASurfaceTheyAreHeldByIt) {
     held.snapshot.lights.resize(1); // the fog is its light
     const Layers layers = rendered(held.snapshot, true, true);
     const float through = t1 * 0.75f;
-    const vec3 expected = glow * (1 - t1) + t1 * 0.25f * vec3(4, 2, 1) + through * glow * (1 - t2);
+    const vec3 expected = fog_radiance * (1 - t1) + t1 * 0.25f * vec3(4, 2, 1) + through * fog_radiance * (1 - t2);
     for (int i = 0; i < 64; ++i) {
         expect_near(layers.color.pixels[i], expected, 1e-5f);
         EXPECT_NEAR(layers.alpha.pixels[i], 1 - through * t2, 1e-6f);
@@ -73,7 +73,7 @@ TEST(Mattes, OfGlassHoldOutTheirShare) {
     Held held;
     hold(held, true, false, 0.25f);
     const Layers layers = rendered(held.snapshot);
-    const vec3 expected = glow * (1 - t1) + t1 * 0.75f * (glow * (1 - t2) + t2 * vec3(1, 3, 5));
+    const vec3 expected = fog_radiance * (1 - t1) + t1 * 0.75f * (fog_radiance * (1 - t2) + t2 * vec3(1, 3, 5));
     for (int i = 0; i < 64; ++i) {
         expect_near(layers.color.pixels[i], expected, 1e-5f);
         EXPECT_NEAR(layers.alpha.pixels[i], 1 - 0.25f * t1, 1e-6f);

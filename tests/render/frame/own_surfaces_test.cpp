@@ -17,7 +17,7 @@
 
 namespace tyndall::test {
 namespace {
-// What the renderer does for prepare_glow and surfaces that only glow, done by the mode: ray by ray.
+// What the renderer does for prepare_emissive and surfaces that only glow, done by the mode: ray by ray.
 Scatter followed(const Snapshot& snapshot, Ray ray, float near) {
     const float extinction = grey_extinction(snapshot.media[0].optics);
     Scatter result;
@@ -30,7 +30,7 @@ Scatter followed(const Snapshot& snapshot, Ray ray, float near) {
         const bool hit = hits.instance[0] >= 0;
         const float t = hit ? near + hits.t[0] : fog_reach(snapshot.media, ray);
         const float transmittance = std::exp(-extinction * t);
-        result.radiance += through * (1 - transmittance) * glow;
+        result.radiance += through * (1 - transmittance) * fog_radiance;
         result.transmittance *= transmittance;
         through *= transmittance;
         if (!hit) {
@@ -90,7 +90,7 @@ void expect_alike(const Image<float>& a, const Image<float>& b, const char* what
 void expect_same_picture(const View& view) {
     const Scene scene = layered_scene();
     const Snapshot snapshot = layered_snapshot(scene);
-    const Layers shared = rendered(mode_of(prepare_glow), view, snapshot);
+    const Layers shared = rendered(mode_of(prepare_emissive), view, snapshot);
     const Layers own = rendered(own_mode(prepare_follow), view, snapshot);
     expect_alike(own.color, shared.color, "color");
     expect_alike(own.inscatter, shared.inscatter, "inscatter");

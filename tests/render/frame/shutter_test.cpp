@@ -263,10 +263,10 @@ TEST(UsualMoments, FollowTheMotionOnThePicture) {
     put(moving, true);
     const Shutter shutter = moving.scene.cameras[0].shutter;
     // 0.4 m are a fifth of the picture.
-    for (const auto& [side, count] : {std::pair{10, 4}, {40, 16}, {100, 32}, {400, 128}, {4000, max_usual_moments}}) {
-        EXPECT_NEAR(motion_on_picture(moving.scene, 0, ivec2(side), 0, shutter), 0.2f * static_cast<float>(side),
+    for (const auto& [side, count] : {std::pair{10, 4}, {40, 16}, {100, 32}, {400, 128}, {4000, max_auto_moments}}) {
+        EXPECT_NEAR(image_motion(moving.scene, 0, ivec2(side), 0, shutter), 0.2f * static_cast<float>(side),
                     0.01f * static_cast<float>(side));
-        EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(side), 0, shutter), count) << side;
+        EXPECT_EQ(auto_moments(moving.scene, 0, ivec2(side), 0, shutter), count) << side;
     }
 }
 
@@ -295,16 +295,16 @@ TEST(UsualMoments, MemoryBoundsThem) {
     Moving moving;
     put(moving, false); // a camera that moves: what is kept of lights is made anew
     const Shutter shutter = moving.scene.cameras[0].shutter;
-    const auto count = [&](size_t lights, bool keeps_pictures, int finer = 1) {
+    const auto count = [&](size_t lights, bool keeps_images, int finer = 1) {
         moving.scene.lights.resize(lights);
-        return usual_moments(moving.scene, 0, ivec2(4000), 0, shutter, keeps_pictures, finer);
+        return auto_moments(moving.scene, 0, ivec2(4000), 0, shutter, keeps_images, finer);
     };
-    EXPECT_EQ(count(1, false), max_usual_moments);
+    EXPECT_EQ(count(1, false), max_auto_moments);
     EXPECT_EQ(count(1, true), 16); // 0.53 GB each
     MediumSource fog;
     fog.kind = MediumKind::vdb;
     moving.scene.media.push_back(fog);
-    EXPECT_EQ(count(1, false), max_usual_moments); // 8 MiB
+    EXPECT_EQ(count(1, false), max_auto_moments); // 8 MiB
     EXPECT_EQ(count(3, false), 256);
     EXPECT_EQ(count(24, false), 32);
     EXPECT_EQ(count(24, false, 2), 32);
@@ -319,18 +319,18 @@ TEST(UsualMoments, ShadowVolumesBoundThem) {
     moving.scene.lights.resize(24);
     const auto count = [&](size_t triangles) {
         moving.scene.meshes[0].triangles.resize(triangles);
-        return usual_moments(moving.scene, 0, ivec2(4000), 0, moving.scene.cameras[0].shutter, false, 1);
+        return auto_moments(moving.scene, 0, ivec2(4000), 0, moving.scene.cameras[0].shutter, false, 1);
     };
-    EXPECT_EQ(count(100), max_usual_moments);
-    EXPECT_EQ(count(200'000), 8);                 // 0.96 GB each
-    EXPECT_EQ(count(400'000), max_usual_moments); // more than is kept of them
+    EXPECT_EQ(count(100), max_auto_moments);
+    EXPECT_EQ(count(200'000), 8);                // 0.96 GB each
+    EXPECT_EQ(count(400'000), max_auto_moments); // more than is kept of them
 }
 
 TEST(UsualMoments, NothingThatMovesNeedsOne) {
     Moving moving;
     put(moving, true);
     moving.scene.nodes[0].translation = vec3(0);
-    EXPECT_EQ(usual_moments(moving.scene, 0, ivec2(64), 0, moving.scene.cameras[0].shutter), 1);
+    EXPECT_EQ(auto_moments(moving.scene, 0, ivec2(64), 0, moving.scene.cameras[0].shutter), 1);
     EXPECT_EQ(view_of(moving.scene, moving.request, moving.request.settings, 0).shutter, nullptr);
 }
 

@@ -49,7 +49,7 @@ void write_cube(const std::string& file, vec3 center, vec3 velocity, float densi
 
 // Seen by an orthographic camera 2 m high and wide, a pixel a voxel, with the shutter open for a frame of a second.
 struct Moving {
-    Scratch scratch;
+    TempFolder scratch;
     Scene scene;
     RenderRequest request;
 
@@ -189,7 +189,7 @@ TEST(VolumeMotion, AMixOfTwoFramesIsTheMeanOfTheirPictures) {
     moving.scene.cameras[0].shutter = {0, 1, {}};
     moving.request.time_samples = 8;
     const Layers mixed = moving.rendered();
-    EXPECT_EQ(usual_moments(moving.scene, 0, {64, 64}, 0, moving.scene.cameras[0].shutter), 4);
+    EXPECT_EQ(auto_moments(moving.scene, 0, {64, 64}, 0, moving.scene.cameras[0].shutter), 4);
     moving.request.shutter = Shutter{};
     const Layers first = moving.rendered();
     moving.fog().sequence.offset = 1;
@@ -239,14 +239,14 @@ TEST(VolumeMotion, AClosedShutterReadsNoVelocity) {
     moving.move(), moving.fog().velocity->grid.grids = {"nothing"};
     EXPECT_TRUE(moving.rendered().color.pixels == still.color.pixels);
     moving.request.shutter.reset();
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { moving.snapshot(); }), HasSubstr("has no grid \"nothing\""));
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { moving.snapshot(); }), HasSubstr("has no grid \"nothing\""));
 }
 
 TEST(VolumeMotion, AbsurdSpeedsAreOneLine) {
     Moving moving;
     write_cube(moving.scratch.file("fog.vdb"), vec3(0), {3e30f, 0, 0});
     moving.move();
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { moving.snapshot(); }),
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { moving.snapshot(); }),
                 HasSubstr("medium smoke: its velocity moves it"));
 }
 }

@@ -35,7 +35,7 @@ TEST(Lettering, LeavesOutWhatDoesNotFit) {
 }
 
 TEST(ContactSheet, PutsPicturesSideBySideInOrder) {
-    std::vector<SheetPicture> pictures;
+    std::vector<SheetImage> pictures;
     const vec3 colors[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (const vec3 color : colors) pictures.push_back({Image<vec3>({80, 40}, color), {"x", "y"}});
     const Image<glm::u8vec3> sheet = contact_sheet(pictures, {0, ViewTransform::srgb});

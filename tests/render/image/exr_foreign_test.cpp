@@ -60,9 +60,9 @@ struct HandMade {
 };
 
 std::string refusal(const std::string& bytes) {
-    const Scratch directory;
+    const TempFolder directory;
     std::ofstream(directory.file("x.exr"), std::ios::binary) << bytes;
-    return error_text(ExitCode::refused, [&] { read_exr(directory.file("x.exr")); });
+    return error_message(ExitCode::refused, [&] { read_exr(directory.file("x.exr")); });
 }
 
 void expect_refused(const std::string& bytes, const std::string& reason) {
@@ -72,7 +72,7 @@ void expect_refused(const std::string& bytes, const std::string& reason) {
 }
 
 TEST(ExrForeign, ReadsAMinimalFile) {
-    const Scratch directory;
+    const TempFolder directory;
     std::ofstream(directory.file("x.exr"), std::ios::binary) << HandMade{}.with_pixels();
     const ExrFile exr = read_exr(directory.file("x.exr"));
     EXPECT_EQ(exr.compression, "none");
@@ -155,7 +155,7 @@ TEST(ExrForeign, RefusesPackedBlocksThatHoldTooLittle) {
         put(result, 0), put(result, static_cast<int32_t>(block.size()));
         return result + block;
     };
-    const Scratch directory;
+    const TempFolder directory;
     std::ofstream(directory.file("x.exr"), std::ios::binary) << packed(1, {15, 0}); // sixteen bytes
     EXPECT_EQ(read_exr(directory.file("x.exr")).channel("R")->pixels.size(), 8u);
     expect_refused(packed(1, {14, 0}), "damaged");
@@ -186,7 +186,7 @@ TEST(ExrForeign, RefusesTheDamagedCollection) {
     int refused = 0;
     for (const std::filesystem::path& file : corpus_files("exr/openexr-damaged")) {
         if (file.filename() == "LICENSE" || file.extension() == ".rst") continue;
-        const std::string text = error_text(ExitCode::refused, [&] { read_exr(file); });
+        const std::string text = error_message(ExitCode::refused, [&] { read_exr(file); });
         EXPECT_NE(text.find("exr"), text.npos);
         ++refused;
     }

@@ -46,7 +46,7 @@ void expect_color(const ExrFile& exr, const std::string& layer, const Image<vec3
 }
 
 TEST(Exr, ReadsBackWhatWasWritten) {
-    const Scratch directory;
+    const TempFolder directory;
     const Layers layers = patterned({37, 29}, {5, 3}, {64, 40});
     write_exr(directory.file("a.exr"), layers, {}, all_layers);
     const ExrFile exr = read_exr(directory.file("a.exr"));
@@ -68,11 +68,11 @@ TEST(Exr, ReadsBackWhatWasWritten) {
 }
 
 TEST(Exr, WritesOnlyTheLayersAskedFor) {
-    const Scratch directory;
+    const TempFolder directory;
     const Layers layers = patterned({4, 4}, {0, 0}, {4, 4});
     write_exr(directory.file("a.exr"), layers, {}, {{}, false});
     EXPECT_EQ(read_exr(directory.file("a.exr")).channels.size(), 4u);
-    const std::string text = error_text(ExitCode::usage, [&] {
+    const std::string text = error_message(ExitCode::usage, [&] {
         write_exr(directory.file("b.exr"), layers, {}, {{"Z", "deph"}, false});
     });
     EXPECT_NE(text.find("deph"), text.npos);
@@ -80,7 +80,7 @@ TEST(Exr, WritesOnlyTheLayersAskedFor) {
 }
 
 TEST(Exr, NamesItsChannelsBeforehand) {
-    const Scratch directory;
+    const TempFolder directory;
     Layers layers = patterned({4, 4}, {0, 0}, {4, 4});
     layers.lights = {{"Key light", layers.color},
                      {"Key_light", layers.color},
@@ -103,7 +103,7 @@ TEST(Exr, NamesItsChannelsBeforehand) {
 }
 
 TEST(Exr, ClampsAndCountsWhatHalfCannotHold) {
-    const Scratch directory;
+    const TempFolder directory;
     Layers layers = patterned({4, 4}, {0, 0}, {4, 4});
     layers.color.at(1, 2) = vec3(1e6f, -1e6f, 65504);
     write_exr(directory.file("half.exr"), layers, {}, {});
@@ -120,7 +120,7 @@ TEST(Exr, ClampsAndCountsWhatHalfCannotHold) {
 }
 
 TEST(Exr, StoredColorIsWhatTheFileHolds) {
-    const Scratch directory;
+    const TempFolder directory;
     Layers layers = patterned({16, 16}, {0, 0}, {16, 16});
     for (size_t i = 0; i < layers.color.pixels.size(); ++i)
         layers.color.pixels[i] = vec3(to_unit(hash(i)), 1e6f * to_unit(hash(i, 1u)), 1e-6f * to_unit(hash(i, 2u)));
@@ -129,7 +129,7 @@ TEST(Exr, StoredColorIsWhatTheFileHolds) {
 }
 
 TEST(Exr, SameInputGivesSameBytes) {
-    const Scratch directory;
+    const TempFolder directory;
     const Layers layers = patterned({100, 70}, {0, 0}, {100, 70});
     Provenance provenance;
     provenance.attributes["tyndall:mode"] = "march";
@@ -139,19 +139,19 @@ TEST(Exr, SameInputGivesSameBytes) {
 }
 
 TEST(Exr, RefusesAFileCutAnywhere) {
-    const Scratch directory;
+    const TempFolder directory;
     write_exr(directory.file("a.exr"), patterned({61, 40}, {0, 0}, {61, 40}), {}, all_layers);
     const std::string bytes = bytes_of(directory.file("a.exr"));
     for (size_t k = 0; k < 300; ++k) {
         const size_t length = k < 20 ? bytes.size() - 1 - k : bytes.size() * (k - 20) / 280;
         directory.put("cut.exr", std::string_view(bytes).substr(0, length));
-        const std::string text = error_text(ExitCode::refused, [&] { read_exr(directory.file("cut.exr")); });
+        const std::string text = error_message(ExitCode::refused, [&] { read_exr(directory.file("cut.exr")); });
         EXPECT_NE(text.find("cut.exr"), text.npos) << text;
     }
 }
 
 TEST(Exr, NeverTakesDamageForAPictureOfOtherShape) {
-    const Scratch directory;
+    const TempFolder directory;
     write_exr(directory.file("a.exr"), patterned({61, 40}, {0, 0}, {61, 40}), {}, all_layers);
     const std::string bytes = bytes_of(directory.file("a.exr"));
     int refused = 0;
@@ -169,7 +169,7 @@ TEST(Exr, NeverTakesDamageForAPictureOfOtherShape) {
 }
 
 TEST(Exr, LeavesNothingOnAFullDisk) {
-    const Scratch directory;
+    const TempFolder directory;
     const Layers layers = patterned({200, 150}, {0, 0}, {200, 150});
     write_exr(directory.file("old.exr"), layers, {}, {});
     const std::string old = bytes_of(directory.file("old.exr"));
@@ -180,8 +180,8 @@ TEST(Exr, LeavesNothingOnAFullDisk) {
     for (const rlim_t most : {0u, 1u, 4095u, 4096u, static_cast<unsigned>(old.size() - 1)}) {
         const rlimit small{most, limit.rlim_max};
         ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-        error_text(ExitCode::unwritable, [&] { write_exr(directory.file("new.exr"), layers, {}, {}); });
-        error_text(ExitCode::unwritable, [&] { write_exr(directory.file("old.exr"), layers, {}, all_layers); });
+        error_message(ExitCode::unwritable, [&] { write_exr(directory.file("new.exr"), layers, {}, {}); });
+        error_message(ExitCode::unwritable, [&] { write_exr(directory.file("old.exr"), layers, {}, all_layers); });
         ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
     }
     std::signal(SIGXFSZ, handler);

@@ -9,7 +9,7 @@
 namespace tyndall::test {
 namespace {
 std::map<std::string, std::string> attributes_of(const Provenance& provenance, ivec2 display = {8, 4}) {
-    const Scratch directory;
+    const TempFolder directory;
     Layers layers;
     layers.display = display, layers.size = {2, 2}, layers.low = {1, 1};
     layers.color = layers.inscatter = Image<vec3>(layers.size);

@@ -21,7 +21,7 @@ struct Decoded {
 constexpr Display plain{0, ViewTransform::srgb};
 
 Decoded written(const Image<vec3>& image, const Display& display = plain) {
-    const Scratch directory;
+    const TempFolder directory;
     write_png(directory.file("a.png"), image, display);
     EXPECT_EQ(directory.names(), std::vector<std::string>{"a.png"});
     const std::string bytes = read_file(directory.file("a.png"));
@@ -84,7 +84,7 @@ TEST(Png, ShowsWhatIsNoColourAsBlackOrWhite) {
 }
 
 TEST(Png, SaysHowItWasShown) {
-    const Scratch directory;
+    const TempFolder directory;
     write_png(directory.file("a.png"), Image<vec3>({4, 4}), {-11.3, ViewTransform::filmic});
     const std::string bytes = read_file(directory.file("a.png"));
     // Length, name, keyword, text and the CRC that zlib gives for it.
@@ -98,9 +98,9 @@ TEST(Png, SaysHowItWasShown) {
 }
 
 TEST(Png, LeavesNothingWhereItCannotWrite) {
-    const Scratch directory;
+    const TempFolder directory;
     std::filesystem::create_directory(directory.path() / "a.png");
-    error_text(ExitCode::unwritable, [&] { write_png(directory.file("a.png"), Image<vec3>({4, 4}), plain); });
+    error_message(ExitCode::unwritable, [&] { write_png(directory.file("a.png"), Image<vec3>({4, 4}), plain); });
     EXPECT_EQ(directory.names(), std::vector<std::string>{"a.png"});
 }
 }

@@ -18,7 +18,7 @@ std::vector<float> spread(float middle, float stops, size_t count = 2000) {
 }
 
 struct Bench {
-    Scratch directory;
+    TempFolder directory;
     Scene scene = moving_scene(directory);
     RenderRequest request = job_for(scene, directory.file("f.####.exr"), {1});
 
@@ -101,10 +101,10 @@ TEST(AutoExposure, IsMeasuredWhereNothingIsStated) {
     Bench bench;
     RenderPlan plan;
     plan.exposure = 3.5;
-    EXPECT_TRUE(measures_exposure(bench.scene, bench.request));
+    EXPECT_TRUE(needs_auto_exposure(bench.scene, bench.request));
     EXPECT_EQ(display_of(bench.scene, bench.request, plan, 1).exposure, 3.5);
     bench.scene.exposure = Keyed<float>(-2), bench.scene.own_exposure = true;
-    EXPECT_FALSE(measures_exposure(bench.scene, bench.request));
+    EXPECT_FALSE(needs_auto_exposure(bench.scene, bench.request));
     EXPECT_EQ(display_of(bench.scene, bench.request, plan, 1).exposure, -2);
     bench.request.exposure = 1;
     EXPECT_EQ(display_of(bench.scene, bench.request, plan, 1).exposure, 1);
@@ -113,7 +113,7 @@ TEST(AutoExposure, IsMeasuredWhereNothingIsStated) {
 }
 
 TEST(AutoExposure, IsTheSameInEveryPartOfASequence) {
-    const Scratch in, all, single;
+    const TempFolder in, all, single;
     Scene scene = moving_scene(in);
     scene.first_frame = 1, scene.last_frame = 3;
     RenderRequest job = job_for(scene, all.file("f.####.exr"), {1, 2, 3});

@@ -22,7 +22,7 @@ Scene small_scene() {
     return scene;
 }
 
-RenderRequest job_for(const Scratch& out, std::vector<int> frames = {1}) {
+RenderRequest job_for(const TempFolder& out, std::vector<int> frames = {1}) {
     RenderRequest job;
     job.scene_file = "scene.json";
     job.output = out.file("f.####.exr");
@@ -43,7 +43,7 @@ double number_of(const ExrFile& exr, const std::string& attribute) { return std:
 }
 
 TEST(NoiseFiles, VariancesAndHalvesKeepAllTheirBits) {
-    const Scratch directory;
+    const TempFolder directory;
     Layers layers;
     layers.display = layers.size = {3, 2};
     layers.color = layers.inscatter = Image<vec3>(layers.size, vec3(0.1f));
@@ -71,7 +71,7 @@ TEST(NoiseFiles, VariancesAndHalvesKeepAllTheirBits) {
 }
 
 TEST(NoiseFiles, HeaderSaysHowNoisyThePictureIs) {
-    const Scratch out;
+    const TempFolder out;
     RenderRequest job = job_for(out);
     job.settings.pixel.samples = 3;
     run(job);
@@ -106,7 +106,7 @@ TEST(NoiseFiles, HeaderSaysHowNoisyThePictureIs) {
 }
 
 TEST(NoiseFiles, ResumeKnowsTargetsAndKeepsWhatWasReached) {
-    const Scratch out;
+    const TempFolder out;
     RenderRequest job = job_for(out, {1, 2});
     job.resume = true, job.target_error = 0.05;
     const RenderReport first = run(job), second = run(job);
@@ -126,7 +126,7 @@ TEST(NoiseFiles, ResumeKnowsTargetsAndKeepsWhatWasReached) {
 }
 
 TEST(NoiseFiles, AMissIsCountedAlsoWhenKept) {
-    const Scratch out;
+    const TempFolder out;
     RenderRequest job = job_for(out);
     job.resolution = {2, 2};
     // What all samples there may be are likely to get to; they cannot promise it.
@@ -149,7 +149,7 @@ TEST(NoiseFiles, AMissIsCountedAlsoWhenKept) {
 }
 
 TEST(NoiseFiles, WhatPassedBeforeRenderingCountsInItsTime) {
-    const Scratch out;
+    const TempFolder out;
     RenderRequest job = job_for(out);
     job.time_budget = 2;
     job.started = steady_seconds() - 3; // all of it
@@ -157,10 +157,10 @@ TEST(NoiseFiles, WhatPassedBeforeRenderingCountsInItsTime) {
 }
 
 TEST(NoiseFiles, TargetsNeedAModeWhoseErrorIsNoise) {
-    const Scratch out;
+    const TempFolder out;
     RenderRequest job = job_for(out);
     job.target_error = 0.1;
-    error_text(ExitCode::usage, [&] { run(job, mode_of(prepare_random)); });
+    error_message(ExitCode::usage, [&] { run(job, mode_of(prepare_random)); });
     EXPECT_TRUE(out.names().empty());
 }
 }

@@ -7,7 +7,7 @@
 #include <fstream>
 
 namespace tyndall::test {
-Scene moving_scene(const Scratch& directory) {
+Scene moving_scene(const TempFolder& directory) {
     Scene scene;
     scene.file = directory.file("scene.json");
     std::ofstream(scene.file) << "{}";

@@ -9,7 +9,7 @@
 
 namespace tyndall::test {
 // A plane, a moving camera and fog; the scene file is in `directory`.
-Scene moving_scene(const Scratch& directory);
+Scene moving_scene(const TempFolder& directory);
 
 RenderRequest job_for(const Scene& scene, const std::string& output, std::vector<int> frames);
 

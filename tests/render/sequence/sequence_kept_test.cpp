@@ -21,7 +21,7 @@ namespace {
 enum class Moves { nothing, light, camera, mesh, fog, brightness };
 
 // A slab with a gap's edge above a floor, drifting fog and a lamp; one of them moves.
-Scene small_scene(const Scratch& directory, Moves moves) {
+Scene small_scene(const TempFolder& directory, Moves moves) {
     Scene scene;
     scene.file = directory.file("scene.json");
     std::ofstream(scene.file) << "{}";
@@ -105,7 +105,7 @@ class SequenceOfMode : public testing::TestWithParam<const char*> {};
 TEST_P(SequenceOfMode, FramesAreTheSameAloneAndInARow) {
     for (const Moves moves :
          {Moves::nothing, Moves::light, Moves::camera, Moves::mesh, Moves::fog, Moves::brightness}) {
-        const Scratch in, row, alone;
+        const TempFolder in, row, alone;
         const Scene scene = small_scene(in, moves);
         const Mode& mode = find_mode(GetParam());
         RenderRequest job = job_for(scene, GetParam(), row.file("f.####.exr"), {1, 2, 3});
@@ -128,7 +128,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, SequenceOfMode,
 
 TEST(SequenceKept, MarchesWithEveryShadowAreTheSameAloneAndInARow) {
     for (const char* visibility : {"maps", "intervals"}) {
-        const Scratch in, row, alone;
+        const TempFolder in, row, alone;
         const Scene scene = small_scene(in, Moves::light);
         RenderRequest job = job_for(scene, "march", row.file("f.####.exr"), {1, 2, 3});
         apply_setting(job.settings, std::string("march.visibility=") + visibility);
@@ -140,7 +140,7 @@ TEST(SequenceKept, MarchesWithEveryShadowAreTheSameAloneAndInARow) {
 }
 
 TEST(SequenceKept, HistoryIsTheSameAloneAndInARow) {
-    const Scratch in, row, alone;
+    const TempFolder in, row, alone;
     const Scene scene = small_scene(in, Moves::camera);
     RenderRequest job = job_for(scene, "froxel", row.file("f.####.exr"), {1, 2, 3, 4});
     job.history = 2;
@@ -151,7 +151,7 @@ TEST(SequenceKept, HistoryIsTheSameAloneAndInARow) {
 }
 
 TEST(SequenceKept, WhatStandsStillIsMadeOnce) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = small_scene(in, Moves::camera);
     RenderRequest job = job_for(scene, "test", out.file("f.####.exr"), {1, 2, 3, 4, 5, 6});
     each_frame_anew = false;
@@ -166,7 +166,7 @@ TEST(SequenceKept, WhatStandsStillIsMadeOnce) {
 }
 
 TEST(SequenceKept, WhatMovesIsGoneTwoFramesLater) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = small_scene(in, Moves::camera);
     RenderRequest job = job_for(scene, "test", out.file("f.####.exr"), {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12});
     each_frame_anew = true;
@@ -178,7 +178,7 @@ TEST(SequenceKept, WhatMovesIsGoneTwoFramesLater) {
 }
 
 TEST(SequenceKept, TheFirstFrameIsLoadedOnce) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = small_scene(in, Moves::fog);
     const RenderRequest job = job_for(scene, "test", out.file("f.####.exr"), {1, 2});
     LoadedFrame first = load_first_frame(scene, job);

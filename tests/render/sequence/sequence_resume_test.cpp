@@ -17,7 +17,7 @@ std::vector<bool> kept_of(const RenderReport& report) {
 }
 
 TEST(Sequence, ResumeKeepsWhatIsRightAndMakesTheRestAnew) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4, 5, 6});
     job.png = true;
@@ -42,7 +42,7 @@ TEST(Sequence, ResumeKeepsWhatIsRightAndMakesTheRestAnew) {
 
 // One byte of header, table or pixels.
 TEST(Sequence, ResumeRendersAgainWhereAnyByteHasChanged) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     RenderRequest job = job_for(scene, out.file("f.exr"), {1});
     job.resolution = {8, 6}, job.resume = true;
@@ -59,7 +59,7 @@ TEST(Sequence, ResumeRendersAgainWhereAnyByteHasChanged) {
 }
 
 TEST(Sequence, ResumeRendersAgainWhatIsStale) {
-    const Scratch in, out;
+    const TempFolder in, out;
     Scene scene = moving_scene(in);
     RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2});
     job.resume = true;
@@ -96,7 +96,7 @@ TEST(Sequence, ResumeRendersAgainWhatIsStale) {
 }
 
 TEST(Sequence, ResumeSeesChangedFogOfTheFrameAlone) {
-    const Scratch in, out;
+    const TempFolder in, out;
     Scene scene = moving_scene(in);
     for (const char* name : {"fog.0001.vdb", "fog.0002.vdb"}) std::ofstream(in.file(name)) << name;
     MediumSource fog;
@@ -113,7 +113,7 @@ TEST(Sequence, ResumeSeesChangedFogOfTheFrameAlone) {
 }
 
 TEST(Sequence, MovingTheWholeProjectKeepsItsFrames) {
-    const Scratch here, there;
+    const TempFolder here, there;
     Scene scene = moving_scene(here);
     run(scene, job_for(scene, here.file("f.exr"), {1}));
     std::filesystem::copy_file(here.file("f.exr"), there.file("g.exr"));

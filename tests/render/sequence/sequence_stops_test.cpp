@@ -42,16 +42,16 @@ ScatterFunction prepare_watching(const View& view, const Snapshot& snapshot, con
 }
 
 TEST(Sequence, AnErrorNamesItsFrameAndKeepsTheOnesBefore) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     const RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
-    const std::string text = error_text(ExitCode::refused, [&] { run(scene, job, mode_of(prepare_failing)); });
+    const std::string text = error_message(ExitCode::refused, [&] { run(scene, job, mode_of(prepare_failing)); });
     EXPECT_EQ(text, "frame 3: fog: does not work");
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.0001.exr", "f.0002.exr"}));
 }
 
 TEST(Sequence, AMissingVolumeNamesItsFrameAndKeepsTheOnesBefore) {
-    const Scratch in, out;
+    const TempFolder in, out;
     Scene scene = moving_scene(in);
     MediumSource fog;
     fog.name = "cloud", fog.kind = MediumKind::vdb, fog.extinction = Keyed<float>(0.0f);
@@ -59,7 +59,7 @@ TEST(Sequence, AMissingVolumeNamesItsFrameAndKeepsTheOnesBefore) {
     fog.sequence.pattern = in.file("fog.####.vdb"), fog.sequence.files = {1, 2, 4};
     scene.media.push_back(fog);
     RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
-    const std::string text = error_text(ExitCode::unreadable, [&] { run(scene, job); });
+    const std::string text = error_message(ExitCode::unreadable, [&] { run(scene, job); });
     EXPECT_EQ(text.substr(0, 8), "frame 3:");
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.0001.exr", "f.0002.exr"}));
     job.missing = MissingFrame::hold;
@@ -67,7 +67,7 @@ TEST(Sequence, AMissingVolumeNamesItsFrameAndKeepsTheOnesBefore) {
 }
 
 TEST(Sequence, AFullDiskStopsAtTheFirstFrameItTakes) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     const RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
     rlimit limit{};
@@ -75,7 +75,7 @@ TEST(Sequence, AFullDiskStopsAtTheFirstFrameItTakes) {
     const auto handler = std::signal(SIGXFSZ, SIG_IGN);
     const rlimit small{1000, limit.rlim_max};
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-    const std::string text = error_text(ExitCode::unwritable, [&] { run(scene, job); });
+    const std::string text = error_message(ExitCode::unwritable, [&] { run(scene, job); });
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
     std::signal(SIGXFSZ, handler);
     EXPECT_EQ(text.substr(0, 8), "frame 1:");
@@ -83,7 +83,7 @@ TEST(Sequence, AFullDiskStopsAtTheFirstFrameItTakes) {
 }
 
 TEST(Sequence, CancellingKeepsWholeFramesOnly) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     const RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3, 4});
     Progress progress(ProgressStyle::none, "render", 4);
@@ -98,7 +98,7 @@ TEST(Sequence, CancellingKeepsWholeFramesOnly) {
 }
 
 TEST(Sequence, ProgressCountsFramesThatAreDoneAndNoOther) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
     run(scene, job);
@@ -115,13 +115,13 @@ TEST(Sequence, ProgressCountsFramesThatAreDoneAndNoOther) {
 }
 
 TEST(Sequence, RefusesWrongJobsBeforeAnyWork) {
-    const Scratch in, out;
+    const TempFolder in, out;
     Scene scene = moving_scene(in);
     const RenderRequest good = job_for(scene, out.file("new/f.####.exr"), {1, 2});
     const auto expect_usage = [&](auto change, const std::string& reason) {
         RenderRequest job = good;
         change(job);
-        const std::string text = error_text(ExitCode::usage, [&] { run(scene, job); });
+        const std::string text = error_message(ExitCode::usage, [&] { run(scene, job); });
         EXPECT_NE(text.find(reason), text.npos) << text;
         EXPECT_TRUE(out.names().empty()) << reason;
     };
@@ -136,16 +136,16 @@ TEST(Sequence, RefusesWrongJobsBeforeAnyWork) {
 }
 
 TEST(Sequence, NeverWritesOverItsOwnScene) {
-    const Scratch in;
+    const TempFolder in;
     Scene scene = moving_scene(in);
     std::ofstream(in.file("sky.exr")) << "sky";
     std::ofstream(in.file("wall.png")) << "wall";
     scene.inputs.push_back({in.path() / "." / "sky.exr", "sky"});
     scene.inputs.push_back({in.file("wall.png"), "wall"});
-    error_text(ExitCode::usage, [&] { run(scene, job_for(scene, in.file("sky.exr"), {1})); });
+    error_message(ExitCode::usage, [&] { run(scene, job_for(scene, in.file("sky.exr"), {1})); });
     RenderRequest job = job_for(scene, in.file("wall.exr"), {1});
     job.png = true;
-    error_text(ExitCode::usage, [&] { run(scene, job); });
+    error_message(ExitCode::usage, [&] { run(scene, job); });
     EXPECT_EQ(read_file(in.file("sky.exr")), "sky");
     EXPECT_EQ(read_file(in.file("wall.png")), "wall");
     job.png = false;
@@ -153,14 +153,14 @@ TEST(Sequence, NeverWritesOverItsOwnScene) {
 }
 
 TEST(Sequence, SaysAtOnceThatItCannotWrite) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     std::ofstream(out.file("file")) << "x";
-    error_text(ExitCode::unwritable, [&] {
+    error_message(ExitCode::unwritable, [&] {
         run(scene, job_for(scene, out.file("file/f.####.exr"), {1, 2}), mode_of(prepare_failing));
     });
     std::filesystem::create_directories(out.path() / "f.0002.exr");
-    error_text(ExitCode::unwritable, [&] { run(scene, job_for(scene, out.file("f.####.exr"), {1, 2})); });
+    error_message(ExitCode::unwritable, [&] { run(scene, job_for(scene, out.file("f.####.exr"), {1, 2})); });
     EXPECT_EQ(out.names(), (std::vector<std::string>{"f.0002.exr", "file"}));
 }
 }

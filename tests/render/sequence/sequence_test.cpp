@@ -21,7 +21,7 @@ ScatterFunction prepare_not_finite(const View& view, const Snapshot&, const Sett
 }
 
 TEST(Sequence, WritesEveryFrame) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 5, -3});
     job.png = true;
@@ -40,7 +40,7 @@ TEST(Sequence, WritesEveryFrame) {
 }
 
 TEST(Sequence, HasTheSameBytesForAnyThreadCount) {
-    const Scratch in, one, two;
+    const TempFolder in, one, two;
     const Scene scene = moving_scene(in);
     RenderRequest job = job_for(scene, one.file("f.####.exr"), {1, 2, 3, 4});
     job.png = true;
@@ -51,7 +51,7 @@ TEST(Sequence, HasTheSameBytesForAnyThreadCount) {
 }
 
 TEST(Sequence, FramesDoNotDependOnTheOthers) {
-    const Scratch in, all, single;
+    const TempFolder in, all, single;
     const Scene scene = moving_scene(in);
     run(scene, job_for(scene, all.file("f.####.exr"), {1, 2, 3}));
     run(scene, job_for(scene, single.file("f.####.exr"), {3}));
@@ -59,7 +59,7 @@ TEST(Sequence, FramesDoNotDependOnTheOthers) {
 }
 
 TEST(Sequence, SaysHowItWasMade) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     RenderRequest job = job_for(scene, out.file("f.exr"), {12});
     job.settings.pixel.samples = 3;
@@ -83,7 +83,7 @@ TEST(Sequence, SaysHowItWasMade) {
 }
 
 TEST(Sequence, TheCommandInTheHeaderNamesFoldersAndOutput) {
-    const Scratch folder, elsewhere;
+    const TempFolder folder, elsewhere;
     std::filesystem::create_directories(folder.path() / "a b/out");
     std::filesystem::create_directories(elsewhere.path() / "x");
     const Scene scene = moving_scene(folder);
@@ -93,7 +93,7 @@ TEST(Sequence, TheCommandInTheHeaderNamesFoldersAndOutput) {
         job.scene_file = scene_file[0] == '/' ? folder.path() / (scene_file + 1) : std::filesystem::path(scene_file);
         job.output = output;
         const View view = view_of(scene, job, job.settings, 12);
-        std::string text = provenance_of(scene, job, plan_as_asked(job), view, "", {}).attributes["tyndall:command"];
+        std::string text = provenance_of(scene, job, requested_plan(job), view, "", {}).attributes["tyndall:command"];
         return text.substr(0, text.find(" --mode"));
     };
     // From the deepest folder that holds both, where that is not the working one.
@@ -111,7 +111,7 @@ TEST(Sequence, TheCommandInTheHeaderNamesFoldersAndOutput) {
 }
 
 TEST(Sequence, CountsSamplesThatAreNotFinite) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     const RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
     const RenderReport report = run(scene, job, mode_of(prepare_not_finite));
@@ -123,7 +123,7 @@ TEST(Sequence, CountsSamplesThatAreNotFinite) {
 }
 
 TEST(Sequence, ReportsItselfAsJson) {
-    const Scratch in, out;
+    const TempFolder in, out;
     const Scene scene = moving_scene(in);
     RenderRequest job = job_for(scene, out.file("f.####.exr"), {1, 2, 3});
     const Mode mode = mode_of(prepare_not_finite);
@@ -146,7 +146,7 @@ TEST(Sequence, ReportsItselfAsJson) {
 
 // A cone knows no shadows of pillars. What it took counts.
 TEST(Sequence, WhatThePlansTechniqueIsTooFarOffForIsRenderedByTheMainOne) {
-    const Scratch out;
+    const TempFolder out;
     const Scene scene = load_scene(std::filesystem::path(TYNDALL_SOURCE_DIR) / "scenes/pillars.json");
     RenderRequest job = job_for(scene, out.file("f.exr"), {1});
     job.settings = settings_for(Quality::preview), job.target_error = 0.1, job.resolution = {32, 18};
@@ -163,7 +163,7 @@ TEST(Sequence, WhatThePlansTechniqueIsTooFarOffForIsRenderedByTheMainOne) {
 
     RenderRequest march = job;
     march.mode = "march";
-    const RenderReport by_march = render_sequence(scene, march, plan_as_asked(march), progress, cancel);
+    const RenderReport by_march = render_sequence(scene, march, requested_plan(march), progress, cancel);
     const FrameStats &cone = alone.frames[0].stats, &main = by_march.frames[0].stats, &sum = both.frames[0].stats;
     EXPECT_EQ(sum.camera_rays, cone.camera_rays + main.camera_rays);
     EXPECT_EQ(sum.steps, cone.steps + main.steps);

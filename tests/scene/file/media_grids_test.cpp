@@ -23,7 +23,7 @@ SparseVolume voxel(const std::string& name, float value) {
     return volume;
 }
 
-LoadAnswer load_medium(const Scratch& folder, const std::string& members) {
+LoadResult load_medium(const TempFolder& folder, const std::string& members) {
     write_vdb(folder / "fire.vdb", voxel("density", 1));
     write_vdb(folder / "other.0002.vdb", voxel("t", 1));
     return load(folder.put("scene.json", R"({"tyndall": 1, "media": [{"type": "vdb", "file": "fire.vdb", )"
@@ -32,7 +32,7 @@ LoadAnswer load_medium(const Scratch& folder, const std::string& members) {
 }
 
 TEST(MediaGrids, ARecipeHasItsTemperatureFromItsFire) {
-    const Scratch folder;
+    const TempFolder folder;
     const std::string bounds = R"({"bounds": {"low": [-1, 0, -1], "high": [1, 2, 1]}, "voxel_size": 0.1)";
     folder.put("fog.json", bounds + "}");
     folder.put("fire.json", bounds + R"(, "fire": {"height": 1}})");
@@ -40,22 +40,22 @@ TEST(MediaGrids, ARecipeHasItsTemperatureFromItsFire) {
         return load(folder.put("scene.json", R"({"tyndall": 1, "media": [{"type": "noise", )" + members + "}]}"));
     };
     const std::string blackbody = R"(, "blackbody": {"convention": "kelvin", "emission_scale": 2})";
-    const LoadAnswer fire = load_recipe(R"("recipe": "fire.json")" + blackbody);
+    const LoadResult fire = load_recipe(R"("recipe": "fire.json")" + blackbody);
     ASSERT_TRUE(fire.loaded) << fire.message;
     EXPECT_THAT(fire.scene.warnings, Not(Contains(HasSubstr("gives no light"))));
     EXPECT_EQ(fire.scene.media[0].blackbody->scale.at(0), 2);
     EXPECT_TRUE(emits_light(fire.scene.media[0]));
-    const LoadAnswer fog = load_recipe(R"("recipe": "fog.json")" + blackbody);
+    const LoadResult fog = load_recipe(R"("recipe": "fog.json")" + blackbody);
     EXPECT_FALSE(fog.loaded);
     EXPECT_THAT(fog.message, HasSubstr("/media/0/blackbody"));
     EXPECT_THAT(fog.message, HasSubstr("\"fire\""));
-    const LoadAnswer dark = load_recipe(R"("recipe": "fire.json")");
+    const LoadResult dark = load_recipe(R"("recipe": "fire.json")");
     EXPECT_THAT(dark.scene.warnings, Contains(HasSubstr("gives no light")));
 }
 
 TEST(MediaGrids, AreReadAsTheyAreWritten) {
-    const Scratch folder;
-    const LoadAnswer answer = load_medium(folder, R"(
+    const TempFolder folder;
+    const LoadResult answer = load_medium(folder, R"(
         "emission": [1, 2, 3], "sequence": {"offset": 1},
         "grids": {
           "density": {"scale": 2, "clamp": [0, 0.5]},
@@ -85,18 +85,18 @@ TEST(MediaGrids, AreReadAsTheyAreWritten) {
 }
 
 TEST(MediaGrids, AnEmissionIsOneUnlessItIsSaid) {
-    const Scratch folder;
+    const TempFolder folder;
     EXPECT_EQ(load_medium(folder, R"("grids": {"emission": "e"})").scene.media[0].emission.at(0), vec3(1));
     EXPECT_EQ(load_medium(folder, R"("grids": {"albedo": "Cd"})").scene.media[0].emission.at(0), vec3(0));
-    const LoadAnswer pbrt =
+    const LoadResult pbrt =
         load_medium(folder, R"("grids": {"temperature": "t"}, "blackbody": {"convention": "pbrt"})");
     EXPECT_TRUE(pbrt.scene.media[0].blackbody->by_absorption);
 }
 
 TEST(MediaGrids, MistakesAreNamed) {
-    const Scratch folder;
+    const TempFolder folder;
     const auto refused = [&](const std::string& members, const char* place, const char* reason) {
-        const LoadAnswer answer = load_medium(folder, members);
+        const LoadResult answer = load_medium(folder, members);
         expect_refusal(answer, std::string("scene.json: /media/0") + place);
         EXPECT_THAT(answer.message, HasSubstr(reason));
     };
@@ -115,14 +115,14 @@ TEST(MediaGrids, MistakesAreNamed) {
     refused(R"("grids": {"density": {"width": 0}})", "/grids/density", "");
     refused(R"("grid": "density", "grids": {"density": "density"})", "/grid", "grids");
     refused(R"("grids": {"temprature": "t"})", "/grids/temprature", "temperature");
-    const LoadAnswer gone = load_medium(folder, R"("grids": {"albedo": {"file": "none.vdb"}})");
+    const LoadResult gone = load_medium(folder, R"("grids": {"albedo": {"file": "none.vdb"}})");
     expect_refusal(gone, "/media/0/grids/albedo/file", ExitCode::unreadable);
 }
 
 TEST(MediaGrids, WhatEmitsAsItAbsorbsNeedsAnExtinction) {
-    const Scratch folder;
+    const TempFolder folder;
     write_vdb(folder / "fire.vdb", voxel("density", 1));
-    const LoadAnswer answer =
+    const LoadResult answer =
         load(folder.put("scene.json", R"({"tyndall": 1, "media": [{"type": "vdb", "file": "fire.vdb",
         "extinction": 0, "grids": {"temperature": "t"}, "blackbody": {"convention": "pbrt"}}]})"));
     EXPECT_TRUE(has_warning(answer.scene, "/media/0/blackbody: emission is proportional to absorption"));

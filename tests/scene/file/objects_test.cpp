@@ -9,7 +9,7 @@ namespace tyndall {
 namespace {
 // A lamp of glass and cap below one node, and a table that has its mesh's name from nobody: instances glass, cap,
 // table.
-void put_room(const Scratch& folder) {
+void put_room(const TempFolder& folder) {
     GltfBuilder gltf = triangle_gltf();
     const std::string primitive = R"({"attributes":{"POSITION":0},"indices":1})";
     gltf.members["meshes"] =
@@ -26,8 +26,8 @@ std::string scene_text(const std::string& more) {
            more + "}";
 }
 
-Scene loaded(const Scratch& folder, const std::string& more) {
-    const LoadAnswer answer = load(folder.put("scene.json", scene_text(more)));
+Scene loaded(const TempFolder& folder, const std::string& more) {
+    const LoadResult answer = load(folder.put("scene.json", scene_text(more)));
     EXPECT_TRUE(answer.loaded) << answer.message;
     return answer.scene;
 }
@@ -40,7 +40,7 @@ Flags casting(const Scene& scene) {
 }
 
 TEST(Objects, FlagsReachAllBelowANodeOrAMesh) {
-    const Scratch folder;
+    const TempFolder folder;
     put_room(folder);
     const auto flags = [&](const std::string& objects) {
         return casting(loaded(folder, R"(}], "objects": [)" + objects + "]"));
@@ -54,7 +54,7 @@ TEST(Objects, FlagsReachAllBelowANodeOrAMesh) {
 }
 
 TEST(Objects, MattesAndShadowsAreApart) {
-    const Scratch folder;
+    const TempFolder folder;
     put_room(folder);
     const Scene scene =
         loaded(folder, R"(}], "objects": [{"name": "Lamp", "matte": true}, {"name": "Cap", "casts_shadows": false}])");
@@ -65,7 +65,7 @@ TEST(Objects, MattesAndShadowsAreApart) {
 }
 
 TEST(Objects, LinksOfLights) {
-    const Scratch folder;
+    const TempFolder folder;
     put_room(folder);
     const auto light = [&](const std::string& links) { return loaded(folder, ", " + links + "}]").lights[0]; };
     EXPECT_TRUE(loaded(folder, "}]").lights[0].lit.empty());
@@ -76,10 +76,10 @@ TEST(Objects, LinksOfLights) {
 }
 
 TEST(Objects, NamesThatAreNotThereAreAnswered) {
-    const Scratch folder;
+    const TempFolder folder;
     put_room(folder);
     const auto refused = [&](const std::string& more, const char* pointer, const char* hint) {
-        const LoadAnswer answer = load(folder.put("scene.json", scene_text(more)));
+        const LoadResult answer = load(folder.put("scene.json", scene_text(more)));
         expect_refusal(answer, pointer);
         EXPECT_NE(answer.message.find(hint), std::string::npos) << answer.message;
     };

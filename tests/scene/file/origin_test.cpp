@@ -6,7 +6,7 @@
 namespace tyndall {
 namespace {
 Scene scene_at(const char* x, const std::string& more = "") {
-    const Scratch folder;
+    const TempFolder folder;
     const std::string at(x);
     return load_scene_text(R"({"tyndall": 1, "camera": {"position": [)" + at + R"(.25, 2, 5], "target": [)" + at +
                                R"(.25, 1, 0]}, "lights": [{"type": "spot", "intensity": 1, "position": [)" + at +

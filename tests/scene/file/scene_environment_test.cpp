@@ -8,8 +8,8 @@
 
 namespace tyndall {
 namespace {
-Scene scene_with(const Scratch& folder, const std::string& fields) {
-    const LoadAnswer answer = load(folder.put("scene.json", R"({"tyndall": 1, )" + fields + "}"));
+Scene scene_with(const TempFolder& folder, const std::string& fields) {
+    const LoadResult answer = load(folder.put("scene.json", R"({"tyndall": 1, )" + fields + "}"));
     EXPECT_TRUE(answer.loaded) << answer.message;
     return answer.scene;
 }
@@ -21,7 +21,7 @@ std::string small_map() {
 }
 
 TEST(SceneEnvironment, IsSeenWhereThereIsNoBackground) {
-    const Scratch folder;
+    const TempFolder folder;
     folder.put("sky.hdr", small_map());
     const Scene scene = scene_with(folder, R"("lights": [{"type": "environment", "name": "dome", "image": "sky.hdr",
         "rotation": 90, "intensity": 2, "exposure": 1, "volume_scale": 0.5, "surface_scale": 0.25, "shadows": false}])");
@@ -42,7 +42,7 @@ TEST(SceneEnvironment, IsSeenWhereThereIsNoBackground) {
 }
 
 TEST(SceneEnvironment, IsHiddenOnRequestAndBehindABackground) {
-    const Scratch folder;
+    const TempFolder folder;
     EXPECT_FALSE(
         scene_with(folder, R"("lights": [{"type": "environment", "color": 1, "visible": false}])").background.stated);
     const Scene other =
@@ -52,7 +52,7 @@ TEST(SceneEnvironment, IsHiddenOnRequestAndBehindABackground) {
 }
 
 TEST(SceneEnvironment, IsTheBackgroundWithoutAMapOfItsOwn) {
-    const Scratch folder;
+    const TempFolder folder;
     const Scene scene = scene_with(folder, R"("lights": [{"type": "environment", "intensity": 5}],
         "background": {"sky": {"zenith": 1, "horizon": [1, 2, 3], "ground": 0}})");
     ASSERT_TRUE(scene.environment);
@@ -63,9 +63,9 @@ TEST(SceneEnvironment, IsTheBackgroundWithoutAMapOfItsOwn) {
 }
 
 TEST(SceneEnvironment, IsNotAPlate) {
-    const Scratch folder;
+    const TempFolder folder;
     folder.put("plate.hdr", small_map());
-    const LoadAnswer answer = load(folder.put("scene.json", R"({"tyndall": 1, "lights": [{"type": "environment"}],
+    const LoadResult answer = load(folder.put("scene.json", R"({"tyndall": 1, "lights": [{"type": "environment"}],
         "background": {"image": "plate.hdr"}})"));
     EXPECT_FALSE(answer.loaded);
     EXPECT_NE(answer.message.find("/lights/0: the background is a plate"), std::string::npos) << answer.message;

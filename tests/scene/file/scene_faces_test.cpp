@@ -13,7 +13,7 @@ Scene scene_with(const std::string& lights) {
     return load_scene_text(R"({"tyndall": 1, "lights": [)" + lights + "]}", "scene.json");
 }
 std::string refusal(const std::string& light) {
-    return error_text(ExitCode::refused, [&] { scene_with(light); });
+    return error_message(ExitCode::refused, [&] { scene_with(light); });
 }
 
 TEST(SceneFaces, AreReadWithTheirSizes) {

@@ -218,10 +218,10 @@ const Mistake mistakes[] = {
 };
 
 TEST(SceneFileErrors, NameFileFieldAndReason) {
-    const Scratch folder;
+    const TempFolder folder;
     for (const Mistake& mistake : mistakes) {
         SCOPED_TRACE(mistake.fields);
-        const LoadAnswer answer =
+        const LoadResult answer =
             load(folder.put("bad.json", R"({"tyndall": 1, )" + std::string(mistake.fields) + "}"));
         expect_refusal(answer, "bad.json: " + std::string(mistake.pointer));
         // The pointer ends there, or goes on to a part of the field.
@@ -233,7 +233,7 @@ TEST(SceneFileErrors, NameFileFieldAndReason) {
 }
 
 TEST(SceneFileErrors, TheDocumentAsAWhole) {
-    const Scratch folder;
+    const TempFolder folder;
     const auto refused = [&](const std::string& text, const char* part) {
         SCOPED_TRACE(text.substr(0, 60));
         expect_refusal(load(folder.put("bad.json", text)), part);
@@ -252,7 +252,7 @@ TEST(SceneFileErrors, TheDocumentAsAWhole) {
 }
 
 TEST(SceneFileErrors, MissingFilesAreUnreadable) {
-    const Scratch folder;
+    const TempFolder folder;
     for (const auto& [fields, pointer] : std::map<std::string, std::string>{
              {R"("gltf": "none.glb")", "/gltf"},
              {R"("gltf": ".")", "/gltf"},
@@ -261,7 +261,7 @@ TEST(SceneFileErrors, MissingFilesAreUnreadable) {
              {R"("media": [{"type": "vdb", "file": "none.####.vdb"}])", "/media/0/file"},
              {R"("background": {"image": "none.png"})", "/background/image"}}) {
         SCOPED_TRACE(fields);
-        const LoadAnswer answer = load(folder.put("scene.json", R"({"tyndall": 1, )" + fields + "}"));
+        const LoadResult answer = load(folder.put("scene.json", R"({"tyndall": 1, )" + fields + "}"));
         expect_refusal(answer, "scene.json: " + pointer, ExitCode::unreadable);
         EXPECT_NE(
             answer.message.find(pointer == "/gltf" && fields.find("none") == std::string::npos ? "directory" : "none"),
@@ -273,7 +273,7 @@ TEST(SceneFileErrors, MissingFilesAreUnreadable) {
 }
 
 TEST(SceneFileErrors, APipeIsNotWaitedFor) {
-    const Scratch folder;
+    const TempFolder folder;
     ASSERT_EQ(mkfifo((folder / "pipe.png").c_str(), 0600), 0);
     ASSERT_EQ(mkfifo((folder / "pipe.json").c_str(), 0600), 0);
     expect_refusal(load(folder.put("scene.json", R"({"tyndall": 1, "background": {"image": "pipe.png"}})")),
@@ -282,7 +282,7 @@ TEST(SceneFileErrors, APipeIsNotWaitedFor) {
 }
 
 TEST(SceneFileErrors, BrokenFilesThatAreNamed) {
-    const Scratch folder;
+    const TempFolder folder;
     folder.put("bad.json", "{");
     folder.put("bad.vdb", "version https://git-lfs.github.com/spec/v1\n");
     folder.put("bad.exr", std::string("\x76\x2f\x31\x01\x02\0\0\0", 8));
@@ -301,7 +301,7 @@ TEST(SceneFileErrors, BrokenFilesThatAreNamed) {
 }
 
 TEST(SceneFileErrors, TheGltfsLightsKeepTheirType) {
-    const Scratch folder;
+    const TempFolder folder;
     GltfBuilder gltf;
     gltf.members["extensions"] = R"({"KHR_lights_punctual":{"lights":[{"type":"point"}]}})";
     gltf.members["nodes"] = R"([{"name":"lamp","extensions":{"KHR_lights_punctual":{"light":0}}}])";

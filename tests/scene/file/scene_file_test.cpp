@@ -11,14 +11,14 @@
 
 namespace tyndall {
 namespace {
-Scene loaded(const Scratch& folder, const std::string& text) {
-    const LoadAnswer answer = load(folder.put("scene.json", text));
+Scene loaded(const TempFolder& folder, const std::string& text) {
+    const LoadResult answer = load(folder.put("scene.json", text));
     EXPECT_TRUE(answer.loaded) << answer.message;
     return answer.scene;
 }
 
 TEST(SceneFile, TheLeastThatIsAScene) {
-    const Scratch folder;
+    const TempFolder folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1})");
     EXPECT_EQ(scene.frame_rate, 24);
     EXPECT_EQ(scene.first_frame, 1);
@@ -33,7 +33,7 @@ TEST(SceneFile, TheLeastThatIsAScene) {
 }
 
 TEST(SceneFile, TextThatIsNoFileYetIsReadAsIfItWereOne) {
-    const Scratch folder;
+    const TempFolder folder;
     const std::string text = R"({"tyndall": 1, "lights": [{"name": "a", "type": "sun", "direction": [0, -1, 0],
         "intensity": 1}], "media": [{"type": "noise", "recipe": "fog/dust.json"}]})";
     folder.put("fog/dust.json", R"({"bounds": {"low": [0, 0, 0], "high": [1, 1, 1]}, "voxel_size": 0.1})");
@@ -50,7 +50,7 @@ TEST(SceneFile, TextThatIsNoFileYetIsReadAsIfItWereOne) {
 }
 
 TEST(SceneFile, GeneralFields) {
-    const Scratch folder;
+    const TempFolder folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1, "frame_rate": 25, "frames": "-4--2", "resolution": [320, 200],
         "exposure": {"keys": [[0, 1], [2, 3]], "interpolation": "smooth"}, "ambient": 0.25 // comments are fine
     })");
@@ -63,7 +63,7 @@ TEST(SceneFile, GeneralFields) {
 }
 
 TEST(SceneFile, Cameras) {
-    const Scratch folder;
+    const TempFolder folder;
     const std::string list =
         R"("cameras": [{"name": "wide", "position": [0, 1, 5], "target": [0, 1, 0], "vertical_fov": 90},
         {"name": "plan", "position": [0, 9, 0], "target": [0, 0, 0], "up": [0, 0, -1], "ortho_height": 12, "near": 1, "far": 20}])";
@@ -81,7 +81,7 @@ TEST(SceneFile, Cameras) {
 }
 
 TEST(SceneFile, Lights) {
-    const Scratch folder;
+    const TempFolder folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1, "lights": [
         {"name": "key", "type": "spot", "position": [0, 5, 0], "target": [3, 1, 0], "color": [1, 0.5, 0.25], "intensity": 800,
          "inner_cone": 10, "outer_cone": 20, "range": 40, "radius": 0.1, "volume_scale": 2, "surface_scale": 0.5},
@@ -105,7 +105,7 @@ TEST(SceneFile, Lights) {
 
 // A light that aims at something while both move keeps pointing at it.
 TEST(SceneFile, TargetsAreFollowed) {
-    const Scratch folder;
+    const TempFolder folder;
     for (const char* how : {"linear", "smooth", "step"}) {
         const std::string other = std::string(how) == "linear" ? "smooth" : "linear";
         const Scene scene = loaded(folder, R"({"tyndall": 1, "lights": [{"type": "spot", "intensity": 1,
@@ -125,7 +125,7 @@ TEST(SceneFile, TargetsAreFollowed) {
 }
 
 TEST(SceneFile, ALoopingAimLoops) {
-    const Scratch folder;
+    const TempFolder folder;
     const Scene scene =
         loaded(folder, R"({"tyndall": 1, "lights": [{"type": "spot", "intensity": 1, "position": [0, 5, 0],
         "target": {"keys": [[0, [0, 0, 0]], [1, [4, 0, 0]], [2, [0, 0, 0]]], "interpolation": "smooth", "loop": true}}]})");
@@ -134,7 +134,7 @@ TEST(SceneFile, ALoopingAimLoops) {
 }
 
 TEST(SceneFile, LightsOfTheGltfCanBeChanged) {
-    const Scratch folder;
+    const TempFolder folder;
     GltfBuilder gltf = triangle_gltf();
     gltf.members["extensions"] = R"({"KHR_lights_punctual":{"lights":[{"type":"spot","intensity":5,"color":[1,0,0],
         "spot":{"outerConeAngle":0.5}},{"type":"point","intensity":3}]}})";
@@ -160,7 +160,7 @@ constexpr const char* recipe = R"({"bounds": {"low": [-1, 0, -1], "high": [1, 2,
     "optics": {"extinction": 3, "albedo": [0.9, 0.8, 0.7], "g": 0.4}})";
 
 TEST(SceneFile, Media) {
-    const Scratch folder;
+    const TempFolder folder;
     folder.put("dust.json", recipe);
     const Scene scene = loaded(folder, R"({"tyndall": 1, "media": [
         {"type": "homogeneous", "extinction": {"keys": [[0, 1], [1, 3]]}, "albedo": 0.5, "bounds": {"low": [-1, -1, -1], "high": [1, 1, 1]},
@@ -191,7 +191,7 @@ TEST(SceneFile, Media) {
 
 // About X first, then Y, then Z, and turns over half a circle go all the way.
 TEST(SceneFile, RotationOfMedia) {
-    const Scratch folder;
+    const TempFolder folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1, "media": [
         {"type": "homogeneous", "extinction": 1, "rotate": [90, 90, 0]},
         {"type": "homogeneous", "extinction": 1, "rotate": {"keys": [[0, [0, 0, 0]], [1, [0, 720, 0]]]}}]})");
@@ -203,7 +203,7 @@ TEST(SceneFile, RotationOfMedia) {
 }
 
 TEST(SceneFile, VolumesBringTheirOptics) {
-    const Scratch folder;
+    const TempFolder folder;
     SparseVolume volume;
     volume.leaves.resize(1);
     volume.leaves[0].values.fill(1);
@@ -229,7 +229,7 @@ TEST(SceneFile, VolumesBringTheirOptics) {
 }
 
 TEST(SceneFile, Backgrounds) {
-    const Scratch folder;
+    const TempFolder folder;
     folder.put("plate.png", png_of({1, 1}, {{255, 0, 0, 255}}));
     const Scene plate = loaded(folder, R"({"tyndall": 1, "background": {"image": "plate.png", "intensity": 2}})");
     ASSERT_EQ(plate.background.kind, BackgroundKind::image);
@@ -248,7 +248,7 @@ TEST(SceneFile, Backgrounds) {
 }
 
 TEST(SceneFile, Billboards) {
-    const Scratch folder;
+    const TempFolder folder;
     const Scene scene = loaded(folder, R"({"tyndall": 1,
         "lights": [{"name": "sun", "type": "sun", "direction": [0, -1, 0], "intensity": 1}],
         "billboards": [{"light": "sun", "from": [0, 3, 0], "to": [1, 0, 0], "width_to": 2, "tint": 0.5, "intensity": 3}]})");
@@ -263,7 +263,7 @@ TEST(SceneFile, ScenesOfTheRepositoryLoad) {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
         if (entry.path().extension() != ".json" || entry.path().filename() == "scene.schema.json") continue;
-        const LoadAnswer answer = load(entry.path());
+        const LoadResult answer = load(entry.path());
         // Some read volumes that a bake has yet to make.
         if (answer.code == ExitCode::unreadable) continue;
         EXPECT_TRUE(answer.loaded) << answer.message;

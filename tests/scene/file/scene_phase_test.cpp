@@ -8,14 +8,14 @@
 
 namespace tyndall {
 namespace {
-LoadAnswer with_phase(const Scratch& folder, const std::string& phase) {
+LoadResult with_phase(const TempFolder& folder, const std::string& phase) {
     return load(
         folder.put("scene.json",
                    R"({"tyndall": 1, "media": [{"type": "homogeneous", "extinction": 1, "phase": )" + phase + "}]}"));
 }
 
-Phase phase_of(const Scratch& folder, const std::string& phase, double seconds = 0) {
-    const LoadAnswer answer = with_phase(folder, phase);
+Phase phase_of(const TempFolder& folder, const std::string& phase, double seconds = 0) {
+    const LoadResult answer = with_phase(folder, phase);
     EXPECT_TRUE(answer.loaded) << answer.message;
     const MediumSource& medium = answer.scene.media.at(0);
     return phase_at(medium.phase, medium.g.at(seconds), seconds);
@@ -27,7 +27,7 @@ void expect_same(const Phase& a, const Phase& b) {
 }
 
 TEST(ScenePhase, HasEveryForm) {
-    const Scratch folder;
+    const TempFolder folder;
     const auto read = [&](const char* text) { return phase_of(folder, text); };
     const Phase narrow = read(R"({"type": "henyey_greenstein", "g": 0.7})");
     EXPECT_EQ(narrow.kind, PhaseKind::henyey_greenstein);
@@ -45,7 +45,7 @@ TEST(ScenePhase, HasEveryForm) {
 }
 
 TEST(ScenePhase, ChangesOverTime) {
-    const Scratch folder;
+    const TempFolder folder;
     const auto at = [&](double seconds) {
         return phase_of(folder, R"({"type": "mix", "weight": {"keys": [[0, 0], [2, 1]]}, "lobes": [
             {"type": "mie", "droplet_diameter": {"keys": [[0, 10], [2, 30]]}}, {"type": "draine", "g": 0.2, "alpha": 1}]})",
@@ -57,7 +57,7 @@ TEST(ScenePhase, ChangesOverTime) {
 }
 
 TEST(ScenePhase, TablesComeFromFilesToo) {
-    const Scratch folder;
+    const TempFolder folder;
     folder.put("bow.txt", "# degrees, 1/sr\r\n0, 4\n90\t1\n\n180 2 # glory\n");
     const Phase file = phase_of(folder, R"({"type": "table", "file": "bow.txt"})");
     expect_same(file, phase_of(folder, R"({"type": "table", "values": [[0, 4], [90, 1], [180, 2]]})"));
@@ -69,9 +69,9 @@ TEST(ScenePhase, TablesComeFromFilesToo) {
 }
 
 TEST(ScenePhase, NumbersThatAreMendedAreSaid) {
-    const Scratch folder;
+    const TempFolder folder;
     const auto warned = [&](const char* phase, const char* part) {
-        const LoadAnswer answer = with_phase(folder, phase);
+        const LoadResult answer = with_phase(folder, phase);
         EXPECT_TRUE(answer.loaded) << answer.message;
         return has_warning(answer.scene, part);
     };
@@ -83,7 +83,7 @@ TEST(ScenePhase, NumbersThatAreMendedAreSaid) {
 }
 
 TEST(ScenePhase, BrokenTablesAreNamedWithTheirLine) {
-    const Scratch folder;
+    const TempFolder folder;
     const auto refused = [&](const std::string& text, const char* part) {
         folder.put("bad.txt", text);
         expect_refusal(with_phase(folder, R"({"type": "table", "file": "bad.txt"})"), part);

@@ -46,7 +46,7 @@ TEST(GltfCorpus, RealFilesLoad) {
     for (const fs::path& file : test::corpus_files("gltf", extensions)) {
         if (file.string().find("malformed") != std::string::npos) continue;
         SCOPED_TRACE(file.string());
-        const LoadAnswer answer = load(file);
+        const LoadResult answer = load(file);
         if (file.string().find("Draco") != std::string::npos) {
             expect_refusal(answer, "KHR_draco_mesh_compression");
             continue;
@@ -62,7 +62,7 @@ TEST(GltfCorpus, MalformedFilesDoNoHarm) {
     int right = 0, wrong = 0;
     for (const fs::path& file : test::corpus_files("gltf/malformed", extensions)) {
         SCOPED_TRACE(file.string());
-        const LoadAnswer answer = load(file);
+        const LoadResult answer = load(file);
         if (answer.loaded)
             expect_sound(answer.scene);
         else
@@ -90,10 +90,10 @@ TEST(GltfCorpus, WaysToStoreOneModelAgree) {
     int compared = 0;
     for (const auto& [folder, files] : models) {
         SCOPED_TRACE(folder.string());
-        const LoadAnswer first = load(files[0]);
+        const LoadResult first = load(files[0]);
         ASSERT_TRUE(first.loaded) << first.message;
         for (size_t way = 1; way < files.size(); ++way, ++compared) {
-            const LoadAnswer other = load(files[way]);
+            const LoadResult other = load(files[way]);
             ASSERT_TRUE(other.loaded) << other.message;
             ASSERT_EQ(first.scene.meshes.size(), other.scene.meshes.size());
             for (size_t i = 0; i < first.scene.meshes.size(); ++i) {

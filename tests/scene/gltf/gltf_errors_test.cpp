@@ -14,14 +14,14 @@
 namespace tyndall {
 namespace {
 // The triangle with one member's text replaced.
-LoadAnswer with(const std::string& member, const std::string& value, const Scratch& folder,
+LoadResult with(const std::string& member, const std::string& value, const TempFolder& folder,
                 GltfBuilder gltf = triangle_gltf()) {
     gltf.members[member] = value;
     return load(folder.put("bad.gltf", gltf.json()));
 }
 
 TEST(GltfErrors, EveryFieldOutOfRange) {
-    const Scratch folder;
+    const TempFolder folder;
     const GltfBuilder good = triangle_gltf();
     ASSERT_TRUE(load(folder.put("good.gltf", good.json())).loaded);
     const std::pair<const char*, std::vector<const char*>> fields[] = {
@@ -44,13 +44,13 @@ TEST(GltfErrors, EveryFieldOutOfRange) {
         for (const char* value : values) {
             SCOPED_TRACE(std::string(field) + " becomes " + value);
             const std::string name(field, std::string_view(field).find(':') + 1);
-            const LoadAnswer answer = load(folder.put("bad.gltf", replaced(good.json(), field, name + value)));
+            const LoadResult answer = load(folder.put("bad.gltf", replaced(good.json(), field, name + value)));
             expect_refusal(answer, "bad.gltf: /");
         }
 }
 
 TEST(GltfErrors, StridesAndSparse) {
-    const Scratch folder;
+    const TempFolder folder;
     const std::string view =
         R"([{"buffer":0,"byteLength":36,"byteStride":STRIDE},{"buffer":0,"byteOffset":36,"byteLength":6}])";
     for (const char* stride : {"0", "4", "8", "13", "256", "-4", "1.5", "16"})
@@ -76,7 +76,7 @@ TEST(GltfErrors, StridesAndSparse) {
 }
 
 TEST(GltfErrors, IndicesBeyondTheVertices) {
-    const Scratch folder;
+    const TempFolder folder;
     for (const uint16_t index : {3, 255, 65535}) {
         GltfBuilder gltf = triangle_gltf();
         gltf.binary.replace(36, 6,
@@ -90,7 +90,7 @@ TEST(GltfErrors, IndicesBeyondTheVertices) {
 }
 
 TEST(GltfErrors, HugeCountsCostNothing) {
-    const Scratch folder;
+    const TempFolder folder;
     // Zeros without data, and a sparse accessor over nothing: a billion of either.
     expect_refusal(
         with(
@@ -110,7 +110,7 @@ TEST(GltfErrors, HugeCountsCostNothing) {
 }
 
 TEST(GltfErrors, NodesMustBeAForest) {
-    const Scratch folder;
+    const TempFolder folder;
     const auto chain = [](int count, const std::string& last) {
         std::string text = "[";
         for (int i = 0; i + 1 < count; ++i) text += R"({"children":[)" + std::to_string(i + 1) + "]},";
@@ -139,7 +139,7 @@ TEST(GltfErrors, NodesMustBeAForest) {
 }
 
 TEST(GltfErrors, PlacesThatAreNoPlaces) {
-    const Scratch folder;
+    const TempFolder folder;
     for (const char* node : {R"({"matrix":[1,2,3]})", R"({"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,1e300,1]})",
                              R"({"translation":[0,1e39,0]})", R"({"translation":[0,0]})", R"({"rotation":[0,0,0]})",
                              R"({"scale":[1,"1",1]})", R"({"translation":"here"})"})
@@ -152,7 +152,7 @@ TEST(GltfErrors, PlacesThatAreNoPlaces) {
              {R"({"mesh":0,"scale":[1,0,1]})", "a scale of 0"},
              {R"({"mesh":0,"matrix":[0,0,0,0,0,0,0,0,0,0,0,0,0,0,0,1]})", "a scale of 0"},
              {R"({"mesh":0,"matrix":[1,0,0,0.5,0,1,0,0,0,0,1,0,0,0,0,1]})", "perspective"}}) {
-        const LoadAnswer answer = with("nodes", "[" + node + "]", folder);
+        const LoadResult answer = with("nodes", "[" + node + "]", folder);
         EXPECT_TRUE(answer.loaded) << answer.message;
         EXPECT_TRUE(has_warning(answer.scene, warning)) << node;
         EXPECT_TRUE(std::isfinite(node_matrix(answer.scene, 0, 0)[3].x));
@@ -160,7 +160,7 @@ TEST(GltfErrors, PlacesThatAreNoPlaces) {
 }
 
 TEST(GltfErrors, DeepNestingEndsEarly) {
-    const Scratch folder;
+    const TempFolder folder;
     for (const char* key : {"extras", "extensions", "nodes", "anything"}) {
         for (const char bracket : {'[', '{'}) {
             std::string deep;
@@ -172,7 +172,7 @@ TEST(GltfErrors, DeepNestingEndsEarly) {
 
 // The canary has just the bytes the buffer needs: were it opened, the file would load.
 TEST(GltfErrors, NothingOutsideTheFolderIsOpened) {
-    const Scratch folder;
+    const TempFolder folder;
     GltfBuilder gltf = triangle_gltf();
     const std::string canary = folder.put("secret.bin", gltf.binary).string();
     folder.put("in/near.bin", gltf.binary);
@@ -206,7 +206,7 @@ TEST(GltfErrors, NothingOutsideTheFolderIsOpened) {
 }
 
 TEST(GltfErrors, OnlyRegularFiles) {
-    const Scratch folder;
+    const TempFolder folder;
     ASSERT_EQ(mkfifo((folder / "pipe.bin").c_str(), 0600), 0);
     std::filesystem::create_directory(folder / "folder.bin");
     for (const char* uri : {"pipe.bin", "folder.bin", "."})
@@ -215,7 +215,7 @@ TEST(GltfErrors, OnlyRegularFiles) {
 }
 
 TEST(GltfErrors, ImagesCannotHurt) {
-    const Scratch folder;
+    const TempFolder folder;
     GltfBuilder gltf = triangle_gltf();
     const int uv = gltf.floats({0, 0, 1, 0, 0, 1}, "VEC2");
     gltf.members["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":)" + std::to_string(uv) +
@@ -235,7 +235,7 @@ TEST(GltfErrors, ImagesCannotHurt) {
     for (const std::string& bytes :
          {std::string("GIF89a\1\0\1\0"), std::string("#?RADIANCE\n"), good.substr(0, 30), good.substr(0, 60),
           png_of({20000, 20000}, {}), png_of({16777217, 1}, {}), std::string("\xff\xd8\xff\xe0 cut"), std::string()}) {
-        const LoadAnswer answer = image(data(bytes));
+        const LoadResult answer = image(data(bytes));
         EXPECT_TRUE(answer.loaded) << answer.message;
         EXPECT_TRUE(has_warning(answer.scene, "/images/0")) << bytes.substr(0, 8);
         EXPECT_TRUE(answer.scene.textures.empty());
@@ -248,7 +248,7 @@ TEST(GltfErrors, ImagesCannotHurt) {
 }
 
 TEST(GltfErrors, ExtensionsThatAreNeeded) {
-    const Scratch folder;
+    const TempFolder folder;
     expect_refusal(with("extensionsRequired", R"(["KHR_draco_mesh_compression"])", folder),
                    "compressed with KHR_draco_mesh_compression");
     expect_refusal(with("extensionsRequired", R"(["EXT_meshopt_compression"])", folder), "EXT_meshopt_compression");
@@ -258,12 +258,12 @@ TEST(GltfErrors, ExtensionsThatAreNeeded) {
     for (const char* fine :
          {"KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_unlit", "KHR_lights_punctual"})
         EXPECT_TRUE(with("extensionsRequired", "[\"" + std::string(fine) + "\"]", folder).loaded) << fine;
-    const LoadAnswer optional = with("extensionsUsed", R"(["ACME_wormhole"])", folder);
+    const LoadResult optional = with("extensionsUsed", R"(["ACME_wormhole"])", folder);
     EXPECT_TRUE(has_warning(optional.scene, "ACME_wormhole"));
 }
 
 TEST(GltfErrors, AnimationsThatDoNotFit) {
-    const Scratch folder;
+    const TempFolder folder;
     GltfBuilder gltf = triangle_gltf();
     const int times = gltf.floats({0, 1, 1}, "SCALAR"), moves = gltf.floats({0, 0, 0, 1, 0, 0, 2, 0, 0}, "VEC3");
     const int few = gltf.floats({0, 0, 0}, "VEC3"), broken = gltf.floats({0, NAN, 0, 0, 0, 0, 0, 0, 0}, "VEC3");
@@ -275,7 +275,7 @@ TEST(GltfErrors, AnimationsThatDoNotFit) {
                         R"(,"output":)" + std::to_string(output) + more + "}]}]",
                     folder, gltf);
     };
-    const LoadAnswer stuck = played(times, moves, "");
+    const LoadResult stuck = played(times, moves, "");
     EXPECT_EQ(stuck.scene.nodes.at(0).translation.times.size(), 2u);
     EXPECT_TRUE(has_warning(stuck.scene, "time does not increase"));
     expect_refusal(played(times, few, ""), "/animations/0/samplers/0/output");
@@ -288,21 +288,21 @@ TEST(GltfErrors, AnimationsThatDoNotFit) {
 }
 
 TEST(GltfErrors, GlbCutAnywhere) {
-    const Scratch folder;
+    const TempFolder folder;
     const GltfBuilder gltf = triangle_gltf();
     const std::string whole = glb_of(gltf.json(false), gltf.binary);
     // Every place near the start and the end, one in seven between: chunks begin at multiples of four.
     for (size_t size = 0; size < whole.size(); size += size < 64 || size + 64 > whole.size() ? 1 : 7) {
-        const LoadAnswer answer = load(folder.put("cut.glb", whole.substr(0, size)));
+        const LoadResult answer = load(folder.put("cut.glb", whole.substr(0, size)));
         expect_refusal(answer, "cut.glb");
     }
     EXPECT_TRUE(load(folder.put("cut.glb", whole)).loaded);
-    const LoadAnswer longer = load(folder.put("cut.glb", whole + "more"));
+    const LoadResult longer = load(folder.put("cut.glb", whole + "more"));
     EXPECT_TRUE(longer.loaded && has_warning(longer.scene, "4 bytes after the end"));
 }
 
 TEST(GltfErrors, GlbHeadersAndChunks) {
-    const Scratch folder;
+    const TempFolder folder;
     const GltfBuilder gltf = triangle_gltf();
     const std::string json = gltf.json(false), whole = glb_of(json, gltf.binary);
     const auto put = [&](size_t offset, uint32_t value) {
@@ -337,7 +337,7 @@ TEST(GltfErrors, GlbHeadersAndChunks) {
                                      built(text + text),
                                      built(text + data + "abc"),
                                      built(text + data + "abcd")}) {
-        const LoadAnswer answer = load(folder.put("bad.glb", bytes));
+        const LoadResult answer = load(folder.put("bad.glb", bytes));
         if (answer.loaded) {
             EXPECT_TRUE(has_warning(answer.scene, "no data")) << "a missing chunk leaves the mesh out";
             ++without_data;
@@ -356,7 +356,7 @@ TEST(GltfErrors, GlbHeadersAndChunks) {
 
 // Bytes changed at random: a scene or one line, never anything else. Returns how many were refused.
 int refused_mutants(uint32_t first, uint32_t last) {
-    const Scratch folder;
+    const TempFolder folder;
     GltfBuilder gltf = triangle_gltf();
     const int uv = gltf.floats({0, 0, 1, 0, 0, 1}, "VEC2"),
               image = gltf.view(png_of({2, 2}, std::vector<std::array<uint8_t, 4>>(4)));
@@ -381,7 +381,7 @@ int refused_mutants(uint32_t first, uint32_t last) {
             const uint32_t value = hash(round, i, 2u);
             bytes[place] = value & 1 ? digits[(value >> 8) % digits.size()] : static_cast<char>(value >> 8);
         }
-        const LoadAnswer answer = load(folder.put("mutant.glb", bytes));
+        const LoadResult answer = load(folder.put("mutant.glb", bytes));
         if (answer.loaded) continue;
         expect_one_line(answer.message);
         ++refused;

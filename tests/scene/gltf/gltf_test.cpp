@@ -9,10 +9,10 @@
 namespace tyndall {
 namespace {
 Scene loaded(const GltfBuilder& gltf, const LoadOptions& options = {}) {
-    const Scratch folder;
-    const LoadAnswer answer = load(folder.put("scene.gltf", gltf.json()), options);
+    const TempFolder folder;
+    const LoadResult answer = load(folder.put("scene.gltf", gltf.json()), options);
     EXPECT_TRUE(answer.loaded) << answer.message;
-    const LoadAnswer same = load(folder.put("scene.glb", glb_of(gltf.json(false), gltf.binary)), options);
+    const LoadResult same = load(folder.put("scene.glb", glb_of(gltf.json(false), gltf.binary)), options);
     EXPECT_TRUE(same.loaded) << same.message;
     EXPECT_EQ(same.scene.meshes.size(), answer.scene.meshes.size());
     EXPECT_EQ(same.scene.nodes.size(), answer.scene.nodes.size());
@@ -308,7 +308,7 @@ TEST(Gltf, MaterialsAndTextures) {
 }
 
 TEST(Gltf, NamesInUris) {
-    const Scratch folder;
+    const TempFolder folder;
     GltfBuilder gltf = triangle_gltf();
     const std::string name = "b\xc3\xa4 r 100%.bin";
     folder.put("parts/" + name, gltf.binary);
@@ -317,7 +317,7 @@ TEST(Gltf, NamesInUris) {
          {"parts/b%C3%A4%20r%20100%25.bin", "parts/b\xc3\xa4 r 100%.bin", "./parts/../x", "100%25.bin"}) {
         gltf.members["buffers"] =
             R"([{"byteLength":)" + std::to_string(gltf.binary.size()) + R"(,"uri":")" + uri + "\"}]";
-        const LoadAnswer answer = load(folder.put("scene.gltf", gltf.json()));
+        const LoadResult answer = load(folder.put("scene.gltf", gltf.json()));
         if (std::string_view(uri).find("..") != std::string_view::npos) {
             expect_refusal(answer, "/buffers/0/uri");
             continue;

@@ -8,12 +8,12 @@
 
 namespace tyndall {
 namespace {
-LoadAnswer answer_of(const GltfBuilder& gltf) {
-    const Scratch folder;
+LoadResult answer_of(const GltfBuilder& gltf) {
+    const TempFolder folder;
     return load(folder.put("scene.gltf", gltf.json()));
 }
 Scene scene_of(const GltfBuilder& gltf) {
-    const LoadAnswer answer = answer_of(gltf);
+    const LoadResult answer = answer_of(gltf);
     EXPECT_TRUE(answer.loaded) << answer.message;
     return answer.scene;
 }

@@ -142,7 +142,7 @@ TEST(IesFile, DamagedFilesAreRefusedInOneLine) {
         {text_of("1 -1 1 2 2 1 2 0 0 0\n1 1 0\n0 90\n10 50\n1 1 1 1\n"), "10 to 50"},
     };
     for (const auto& [text, part] : cases) {
-        const std::string message = error_text(ExitCode::refused, [&] { read_ies(text, "bad.ies"); });
+        const std::string message = error_message(ExitCode::refused, [&] { read_ies(text, "bad.ies"); });
         EXPECT_NE(message.find(part), std::string::npos) << message << " for " << part;
     }
     // Cut anywhere: refused, or whole.

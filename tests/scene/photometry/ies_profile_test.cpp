@@ -25,7 +25,7 @@ TEST(IesProfile, AgreesWithItsFileInEveryDirection) {
         constexpr uint32_t count = 20000;
         for (uint32_t i = 0; i < count; ++i) {
             const dvec3 direction = random_direction(i);
-            const double share = profile_share(*profile, direction);
+            const double share = profile_factor(*profile, direction);
             ASSERT_NEAR(share, candela_at(file, direction) / file.peak(), tolerance) << path << " " << i;
             if (std::acos(direction.z) > profile->reach + 1e-5) {
                 ASSERT_EQ(share, 0) << path;
@@ -45,7 +45,7 @@ TEST(IesProfile, UnevenAnglesGetAFineTable) {
     const auto profile = make_ies_profile(file, "");
     for (uint32_t i = 0; i < 5000; ++i) {
         const dvec3 direction = random_direction(i);
-        ASSERT_NEAR(profile_share(*profile, direction), candela_at(file, direction) / file.peak(), 1e-3);
+        ASSERT_NEAR(profile_factor(*profile, direction), candela_at(file, direction) / file.peak(), 1e-3);
     }
     EXPECT_NEAR(profile->reach, 0.5f * pi, 1e-5f);
 }

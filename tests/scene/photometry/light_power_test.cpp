@@ -23,7 +23,7 @@ std::string spot(const std::string& more) {
 }
 std::string point(const std::string& more) { return R"({"type": "point", "position": [0,1,0], )" + more + "}"; }
 std::string refusal(const std::string& light) {
-    return error_text(ExitCode::refused, [&] { scene_with(light); });
+    return error_message(ExitCode::refused, [&] { scene_with(light); });
 }
 
 TEST(LightPower, LumensOfAConeAreTheIntegralOfItsFalloff) {
@@ -106,7 +106,7 @@ TEST(LightPower, WhatDoesNotFitIsRefused) {
 
 class WithFiles : public testing::Test {
 protected:
-    Scratch scratch;
+    TempFolder scratch;
     Scene load(const std::string& light) {
         return load_scene_text("{\"tyndall\": 1, \"lights\": [" + light + "]}", scratch / "scene.json");
     }
@@ -123,11 +123,11 @@ TEST_F(WithFiles, AProfileBringsItsOwnCandela) {
     EXPECT_FLOAT_EQ(candela_of(one(R"(}, "intensity": 8)"), 0), 8);
     // Half of the sphere shines: 2π candela per lumen.
     EXPECT_NEAR(candela_of(one(R"(}, "intensity": 800, "unit": "lumen")"), 0), 800 / (sphere / 2), 1e-3);
-    EXPECT_NE(
-        error_text(ExitCode::refused, [&] { one(R"(, "multiplier": 3}, "intensity": 8)"); }).find("cannot be combined"),
-        std::string::npos);
+    EXPECT_NE(error_message(ExitCode::refused, [&] { one(R"(, "multiplier": 3}, "intensity": 8)"); })
+                  .find("cannot be combined"),
+              std::string::npos);
     write_file_atomically(scratch / "bad.ies", "TILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0\n50\n");
-    EXPECT_NE(error_text(ExitCode::refused, [&] { load(point(R"("ies": {"file": "bad.ies"})")); }).find("bad.ies"),
+    EXPECT_NE(error_message(ExitCode::refused, [&] { load(point(R"("ies": {"file": "bad.ies"})")); }).find("bad.ies"),
               std::string::npos);
     EXPECT_EQ(error_of([&] { load(point(R"("ies": {"file": "none.ies"})")); }).code, ExitCode::unreadable);
 }

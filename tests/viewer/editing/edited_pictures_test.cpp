@@ -40,7 +40,7 @@ void set(SceneSession& session, std::string_view path, std::string_view value, d
 }
 
 TEST(EditedPictures, SavedAndReadAgainTheyAreTheSame) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     const Image<vec3> untouched = picture(session.scene, 13);
     const std::pair<const char*, const char*> edits[] = {{"lights/0/position", "1.1 2.7 0.3"},
@@ -73,7 +73,7 @@ TEST(EditedPictures, SavedAndReadAgainTheyAreTheSame) {
 }
 
 TEST(EditedPictures, ABareModelAndItsSceneFileAreTheSame) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio / "room.gltf");
     save_as(session, studio / "room.json");
     EXPECT_EQ(different(picture(load_scene(studio / "room.json"), 1), picture(load_scene(studio / "room.gltf"), 1)),
@@ -82,7 +82,7 @@ TEST(EditedPictures, ABareModelAndItsSceneFileAreTheSame) {
 
 // A viewer makes the next snapshot out of the one before the edit: nothing old may show.
 TEST(EditedPictures, SnapshotsOfAnEditedSceneMayShareWithThoseBefore) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     auto before = std::make_unique<Snapshot>(make_snapshot(session.scene, moment_of(session.scene, 13)));
     picture(session.scene, 13, *before);

@@ -60,7 +60,7 @@ const std::string rich_scene = R"(// made by hand
 const std::string dust = R"({ "bounds": { "low": [-1, 0, -1], "high": [1, 2, 1] }, "voxel_size": 0.25,
   "wind": [0.1, 0, 0], "optics": { "extinction": 0.4, "albedo": [0.9, 0.8, 0.7], "g": 0.2 } })";
 
-Studio::Studio(std::string_view text) {
+SceneFolder::SceneFolder(std::string_view text) {
     put("room.gltf", model().json());
     put("fog/dust.json", dust);
     file = put("scene.json", text);

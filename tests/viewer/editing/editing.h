@@ -19,10 +19,10 @@ GltfBuilder model();
 extern const std::string rich_scene, dust; // texts of the scene and of its recipe
 
 // A folder with the scene and what it names.
-struct Studio : Scratch {
+struct SceneFolder : TempFolder {
     std::filesystem::path file;
 
-    explicit Studio(std::string_view text = rich_scene);
+    explicit SceneFolder(std::string_view text = rich_scene);
 };
 
 void write_ball(const std::filesystem::path& file);

@@ -40,7 +40,7 @@ TEST(LightHandles, IconsStandWhereTheLightsAre) {
     EXPECT_NEAR(icons[0].pixel.y, 90, 1e-3f); // 10 pixels per metre
     EXPECT_EQ(icons[0].depth, 10);
     EXPECT_EQ(icons[1].place, vec3(0, 5, 5)) << "a sun without a place";
-    EXPECT_NEAR(pixel_span(eye, size, vec3(2, 1, 0)), 0.1f, 1e-6f);
+    EXPECT_NEAR(pixel_size(eye, size, vec3(2, 1, 0)), 0.1f, 1e-6f);
 }
 
 TEST(LightHandles, PicksTheNearestIconWithinReach) {

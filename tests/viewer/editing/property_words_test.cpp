@@ -8,7 +8,7 @@
 
 namespace tyndall::test {
 TEST(PropertyWords, EveryPropertyHasItsOwnShortLabel) {
-    const Studio studio;
+    const SceneFolder studio;
     const Scene scene = load_scene(studio.file);
     ASSERT_GT(all_properties().size(), 30u);
     for (const Property& property : all_properties()) {
@@ -26,20 +26,20 @@ TEST(PropertyWords, EveryPropertyHasItsOwnShortLabel) {
 }
 
 TEST(PropertyWords, MessagesSpeakOfLabels) {
-    EXPECT_EQ(in_words(Part::light, "outer_cone must not be less than inner_cone, at any moment"),
+    EXPECT_EQ(with_labels(Part::light, "outer_cone must not be less than inner_cone, at any moment"),
               "outer cone must not be less than inner cone, at any moment");
-    EXPECT_EQ(in_words(Part::medium, "outer_cone"), "outer_cone");
+    EXPECT_EQ(with_labels(Part::medium, "outer_cone"), "outer_cone");
 }
 
 TEST(PropertyWords, SunsStandWhereTheirLightComesFrom) {
-    EXPECT_NEAR(sun_place({0, -3, 0}).height, 90, 1e-3f);
-    EXPECT_NEAR(sun_place({0, 0, -2}).height, 0, 1e-3f);
-    EXPECT_NEAR(sun_place({0, 0, -2}).bearing, 0, 1e-3f);
-    EXPECT_NEAR(sun_place({-1, -1, 0}).height, 45, 1e-3f);
-    EXPECT_NEAR(sun_place({-1, -1, 0}).bearing, 90, 1e-3f);
-    EXPECT_NEAR(sun_place({1, 1, 0}).height, -45, 1e-3f);
+    EXPECT_NEAR(sun_angles({0, -3, 0}).height, 90, 1e-3f);
+    EXPECT_NEAR(sun_angles({0, 0, -2}).height, 0, 1e-3f);
+    EXPECT_NEAR(sun_angles({0, 0, -2}).azimuth, 0, 1e-3f);
+    EXPECT_NEAR(sun_angles({-1, -1, 0}).height, 45, 1e-3f);
+    EXPECT_NEAR(sun_angles({-1, -1, 0}).azimuth, 90, 1e-3f);
+    EXPECT_NEAR(sun_angles({1, 1, 0}).height, -45, 1e-3f);
     for (const vec3 direction : {vec3(0.78f, -0.42f, 0.15f), vec3(-0.1f, -0.9f, -0.4f), vec3(0.3f, 0.2f, -0.9f)}) {
-        const vec3 again = direction_from(sun_place(direction));
+        const vec3 again = direction_from(sun_angles(direction));
         EXPECT_LT(glm::distance(again, glm::normalize(direction)), 1e-5f);
     }
 }
@@ -48,14 +48,14 @@ TEST(PropertyWords, SlidersHoldTheirValuesAndStayInRange) {
     int sliders = 0;
     for (const Property& property : all_properties()) {
         if (property.kind != ValueKind::number) continue;
-        for (const float value : {property.least, property.slider_low, property.slider_high, property.most,
+        for (const float value : {property.min_value, property.slider_low, property.slider_high, property.max_value,
                                   0.5f * (property.slider_low + property.slider_high), 3 * property.slider_high}) {
-            if (!(value >= property.least && value <= property.most)) continue;
+            if (!(value >= property.min_value && value <= property.max_value)) continue;
             const SliderRange range = slider_range(property, value);
             EXPECT_LE(range.low, value) << property.name;
             EXPECT_GE(range.high, value) << property.name;
-            EXPECT_GE(range.low, property.least) << property.name;
-            EXPECT_LE(range.high, property.most) << property.name;
+            EXPECT_GE(range.low, property.min_value) << property.name;
+            EXPECT_LE(range.high, property.max_value) << property.name;
             EXPECT_LT(range.low, range.high) << property.name;
             EXPECT_TRUE(!range.logarithmic || range.low >= 0) << property.name;
             ++sliders;

@@ -35,38 +35,38 @@ std::string refusal(Scene& scene, std::string_view path, std::string_view value,
 
 TEST(KeyPlace, FindsTheKeyAtAMomentOrTheGapForANewOne) {
     const std::vector<float> times{0, 1, 2};
-    const auto at = [&](double seconds, bool loop) { return key_place(times, loop, seconds, 24); };
+    const auto at = [&](double seconds, bool loop) { return find_key(times, loop, seconds, 24); };
     EXPECT_EQ(at(1, false).index, 1u);
-    EXPECT_TRUE(at(1, false).there);
-    EXPECT_TRUE(at(1.002, false).there);
-    EXPECT_TRUE(at(0.998, false).there); // 0.05 / 24 = 0.0021
+    EXPECT_TRUE(at(1, false).exists);
+    EXPECT_TRUE(at(1.002, false).exists);
+    EXPECT_TRUE(at(0.998, false).exists); // 0.05 / 24 = 0.0021
     EXPECT_EQ(at(0.998, false).index, 1u);
-    EXPECT_FALSE(at(1.003, false).there);
+    EXPECT_FALSE(at(1.003, false).exists);
     EXPECT_EQ(at(1.003, false).index, 2u);
     EXPECT_EQ(at(1.003, false).time, 1.003f);
     EXPECT_EQ(at(-1, false).index, 0u);
     EXPECT_EQ(at(-1, false).time, -1.0f);
-    EXPECT_FALSE(at(-1, false).there);
+    EXPECT_FALSE(at(-1, false).exists);
     EXPECT_EQ(at(5, false).index, 3u);
-    EXPECT_FALSE(at(5, false).there);
+    EXPECT_FALSE(at(5, false).exists);
     for (const double seconds : {0.0, 2.0, 4.0, -2.0, 1.999, 2.001}) EXPECT_TRUE(at(seconds, true).seam) << seconds;
     EXPECT_EQ(at(5, true).index, 1u);
-    EXPECT_TRUE(at(5, true).there);
+    EXPECT_TRUE(at(5, true).exists);
     EXPECT_FALSE(at(5, true).seam);
     EXPECT_EQ(at(-0.5, true).index, 2u);
     EXPECT_EQ(at(-0.5, true).time, 1.5f);
-    EXPECT_FALSE(key_place(std::vector<float>{3}, true, 4, 24).there);
+    EXPECT_FALSE(find_key(std::vector<float>{3}, true, 4, 24).exists);
     // Of two keys within reach the nearer one.
     const std::vector<float> close{1, 1.003f};
-    EXPECT_EQ(key_place(close, false, 1.002, 24).index, 1u);
-    EXPECT_EQ(key_place(close, false, 1.0012, 24).index, 0u);
+    EXPECT_EQ(find_key(close, false, 1.002, 24).index, 1u);
+    EXPECT_EQ(find_key(close, false, 1.0012, 24).index, 0u);
     // Where floats are further apart than the reach, a moment that rounds onto a key is that key.
     const std::vector<float> late{999999.9375f, 1e6f};
-    EXPECT_TRUE(key_place(late, false, 999999.95, 1000).there);
+    EXPECT_TRUE(find_key(late, false, 999999.95, 1000).exists);
 }
 
 TEST(SceneEdit, ReachesTheNumbersOfPhaseFunctions) {
-    const Studio studio(R"({"tyndall": 1, "media": [
+    const SceneFolder studio(R"({"tyndall": 1, "media": [
         {"name": "cloud", "type": "homogeneous", "extinction": 1, "phase": {"type": "mie", "droplet_diameter": 10}},
         {"name": "dust", "type": "homogeneous", "extinction": 1, "phase": {"type": "draine", "g": 0.5, "alpha": 1}},
         {"name": "both", "type": "homogeneous", "extinction": 1, "phase": {"type": "mix", "weight": 0.5,
@@ -86,15 +86,15 @@ TEST(SceneEdit, ReachesTheNumbersOfPhaseFunctions) {
 }
 
 TEST(SceneEdit, ListsWhatEachThingHas) {
-    const Studio studio;
+    const SceneFolder studio;
     const Scene scene = load_scene(studio.file);
     const auto names = [&](Part part, size_t index) {
         std::vector<std::string> result;
         for (const Property* property : properties_of(scene, part, index)) {
             result.push_back(property->name);
-            EXPECT_LE(property->least, property->slider_low);
+            EXPECT_LE(property->min_value, property->slider_low);
             EXPECT_LT(property->slider_low, property->slider_high);
-            EXPECT_LE(property->slider_high, property->most);
+            EXPECT_LE(property->slider_high, property->max_value);
             EXPECT_GT(std::string(property->doc).size(), 5u);
         }
         return result;
@@ -119,7 +119,7 @@ TEST(SceneEdit, ListsWhatEachThingHas) {
 }
 
 TEST(SceneEdit, ValuesAreThoseOfTheFile) {
-    const Studio studio;
+    const SceneFolder studio;
     const Scene scene = load_scene(studio.file);
     EXPECT_EQ(now(scene, "lights/lamp \"\u00e4\"/intensity", 0.5), vec3(12, 0, 0));
     EXPECT_NEAR(now(scene, "lights/stage/inner_cone").x, 5, 1e-6f);
@@ -134,7 +134,7 @@ TEST(SceneEdit, ValuesAreThoseOfTheFile) {
 }
 
 TEST(SceneEdit, AValueWithoutKeysIsReplaced) {
-    const Studio studio;
+    const SceneFolder studio;
     Scene scene = load_scene(studio.file);
     set(scene, "lights/evening/intensity", "400", 1.7);
     EXPECT_EQ(scene.lights[6].intensity.values, std::vector<float>{400});
@@ -152,7 +152,7 @@ TEST(SceneEdit, AValueWithoutKeysIsReplaced) {
 }
 
 TEST(SceneEdit, ALensIsFocusedOnTheTargetUntilItIsSaid) {
-    const Studio studio;
+    const SceneFolder studio;
     Scene scene = load_scene(studio.file);
     EXPECT_NE(refusal(scene, "cameras/eye/focus_distance", "2"), "") << "a pinhole has none";
     set(scene, "cameras/eye/aperture_radius", "0.1");
@@ -163,7 +163,7 @@ TEST(SceneEdit, ALensIsFocusedOnTheTargetUntilItIsSaid) {
 }
 
 TEST(SceneEdit, AValueWithKeysGetsOneAtTheMoment) {
-    const Studio studio;
+    const SceneFolder studio;
     Scene scene = load_scene(studio.file);
     Keyed<float>& extinction = scene.media[1].extinction;
     set(scene, "media/1/extinction", "0.7", 2);
@@ -179,7 +179,7 @@ TEST(SceneEdit, AValueWithKeysGetsOneAtTheMoment) {
 }
 
 TEST(SceneEdit, AClosedLoopStaysClosedAndAnOpenOneOpen) {
-    const Studio studio;
+    const SceneFolder studio;
     Scene scene = load_scene(studio.file);
     Keyed<float>& flame = scene.lights[3].intensity;
     set(scene, "lights/3/intensity", "20", 2);
@@ -193,7 +193,7 @@ TEST(SceneEdit, AClosedLoopStaysClosedAndAnOpenOneOpen) {
 }
 
 TEST(SceneEdit, ALightKeepsAimingAtItsTarget) {
-    const Studio studio;
+    const SceneFolder studio;
     Scene scene = load_scene(studio.file);
     set(scene, "lights/stage/position", "0 4 0", 0);
     EXPECT_EQ(scene.lights[4].direction.at(0), vec3(0, -4, 0));
@@ -203,26 +203,26 @@ TEST(SceneEdit, ALightKeepsAimingAtItsTarget) {
 }
 
 TEST(SceneEdit, AProfileKeepsItsOrientationWhenItsLightIsMoved) {
-    const Studio studio;
+    const SceneFolder studio;
     Scene scene = load_scene(studio.file);
     scene.lights[0].gobo.emplace();
     Node& node = scene.nodes[static_cast<size_t>(scene.lights[0].node)];
     node.rotation = glm::angleAxis(0.7f, glm::normalize(vec3(1, 2, 3)));
-    const LightPlace before = light_place(scene, 0, 0);
+    const LightPlacement before = light_placement(scene, 0, 0);
     ASSERT_EQ(apply(scene, parse_edit(scene, "lights/0/position", "5 6 7", 0)).size(), 3u);
-    EXPECT_NEAR(glm::distance(light_place(scene, 0, 0).direction, before.direction), 0, 1e-6f);
-    EXPECT_NEAR(glm::distance(light_place(scene, 0, 0).up, before.up), 0, 1e-6f);
+    EXPECT_NEAR(glm::distance(light_placement(scene, 0, 0).direction, before.direction), 0, 1e-6f);
+    EXPECT_NEAR(glm::distance(light_placement(scene, 0, 0).up, before.up), 0, 1e-6f);
 }
 
 TEST(SceneEdit, ALightOfTheModelLeavesItsNodeWithPlaceAndDirection) {
-    const Studio studio;
+    const SceneFolder studio;
     Scene scene = load_scene(studio.file);
-    const LightPlace before = light_place(scene, 0, 0);
+    const LightPlacement before = light_placement(scene, 0, 0);
     const std::vector<Edit> singles = apply(scene, parse_edit(scene, "lights/0/position", "5 6 7", 0));
     ASSERT_EQ(singles.size(), 2u);
     EXPECT_EQ(scene.lights[0].node, -1);
-    EXPECT_EQ(light_place(scene, 0, 0).position, vec3(5, 6, 7));
-    EXPECT_NEAR(glm::distance(light_place(scene, 0, 0).direction, before.direction), 0, 1e-6f);
+    EXPECT_EQ(light_placement(scene, 0, 0).position, vec3(5, 6, 7));
+    EXPECT_NEAR(glm::distance(light_placement(scene, 0, 0).direction, before.direction), 0, 1e-6f);
     EXPECT_EQ(apply(scene, parse_edit(scene, "lights/0/position", "5 6 8", 0)).size(), 1u);
     EXPECT_NE(refusal(scene, "lights/Moving/position", "0 0 0").find("animated"), std::string::npos);
     set(scene, "lights/Moving/intensity", "3");
@@ -230,7 +230,7 @@ TEST(SceneEdit, ALightOfTheModelLeavesItsNodeWithPlaceAndDirection) {
 }
 
 TEST(SceneEdit, TheGroundGoesWithTheHorizonUntilItHasItsOwn) {
-    const Studio studio;
+    const SceneFolder studio;
     Scene scene = load_scene(studio.file);
     set(scene, "background/sky/horizon", "1 2 3");
     EXPECT_EQ(scene.background.ground.values[0], vec3(1, 2, 3));
@@ -254,7 +254,7 @@ TEST(SceneEdit, FarScenesShowPlacesOfTheWorldAndKeepThem) {
 }
 
 TEST(SceneEdit, RefusesWhatASceneFileMayNotSayAndChangesNothing) {
-    const Studio studio;
+    const SceneFolder studio;
     Scene scene = load_scene(studio.file);
     EXPECT_NE(refusal(scene, "lights/evening/intensity", "-1").find("is not between 0"), std::string::npos);
     EXPECT_NE(refusal(scene, "media/0/albedo", "0.5 1.1 0.5"), "");

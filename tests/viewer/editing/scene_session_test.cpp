@@ -15,7 +15,7 @@ void set(SceneSession& session, std::string_view path, std::string_view value, u
 float exposure(const SceneSession& session) { return session.scene.exposure.at(0); }
 
 // Writes with a time of change that differs from all before.
-void write_later(const Studio& studio, const std::string& name, std::string_view text) {
+void write_later(const SceneFolder& studio, const std::string& name, std::string_view text) {
     static int seconds = 10;
     std::filesystem::last_write_time(studio.put(name, text),
                                      std::filesystem::file_time_type::clock::now() + std::chrono::seconds(++seconds));
@@ -23,7 +23,7 @@ void write_later(const Studio& studio, const std::string& name, std::string_view
 }
 
 TEST(SceneSession, UndoAndRedoGoThroughEveryState) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     std::vector<std::vector<std::string>> states{state_of(session.scene)};
     const std::pair<const char*, const char*> edits[] = {{"exposure", "1"},
@@ -53,7 +53,7 @@ TEST(SceneSession, UndoAndRedoGoThroughEveryState) {
 }
 
 TEST(SceneSession, ADragIsOneStep) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     for (const char* value : {"1", "1.5", "2"}) set(session, "exposure", value, 7);
     ASSERT_EQ(session.steps.size(), 1u);
@@ -71,7 +71,7 @@ TEST(SceneSession, ADragIsOneStep) {
 
 // The order within a drag matters where values check each other or share a key.
 TEST(SceneSession, ADragOfSeveralValuesIsDoneAgainAsItEnded) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     for (const auto& [path, value] : {std::pair{"lights/5/outer_cone", "60"},
                                       {"lights/5/inner_cone", "50"},
@@ -91,7 +91,7 @@ TEST(SceneSession, ADragOfSeveralValuesIsDoneAgainAsItEnded) {
 }
 
 TEST(SceneSession, KnowsWhetherThereAreUnsavedChanges) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     EXPECT_FALSE(has_unsaved_changes(session));
     set(session, "exposure", "1"), set(session, "exposure", "2");
@@ -114,7 +114,7 @@ TEST(SceneSession, KnowsWhetherThereAreUnsavedChanges) {
 }
 
 TEST(SceneSession, SavesNothingOverSomebodyElsesChange) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     set(session, "exposure", "1");
     const std::string other = replaced(rich_scene, "0.02", "0.5");
@@ -125,7 +125,7 @@ TEST(SceneSession, SavesNothingOverSomebodyElsesChange) {
 }
 
 TEST(SceneSession, SavesElsewhereAndGoesOnThere) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     set(session, "media/dust/wind", "1 0 0");
     std::filesystem::create_directories(studio / "takes");
@@ -142,7 +142,7 @@ TEST(SceneSession, SavesElsewhereAndGoesOnThere) {
 }
 
 TEST(SceneSession, ABareModelIsSavedAsAScene) {
-    const Studio studio;
+    const SceneFolder studio;
     GltfBuilder plain = triangle_gltf();
     studio.put("plain.gltf", plain.json());
     for (const char* name : {"plain.gltf", "room.gltf"}) {
@@ -165,7 +165,7 @@ TEST(SceneSession, ABareModelIsSavedAsAScene) {
 }
 
 TEST(SceneSession, ABareVolumeIsSavedAsAScene) {
-    const Studio studio;
+    const SceneFolder studio;
     write_ball(studio / "ball.vdb");
     SceneSession session = open_session(studio / "ball.vdb");
     // What the viewer shows of a bare volume is what all commands take.
@@ -192,7 +192,7 @@ TEST(SceneSession, ABareVolumeIsSavedAsAScene) {
 }
 
 TEST(SceneSession, NoticesFilesThatChange) {
-    const Studio studio;
+    const SceneFolder studio;
     write_ball(studio / "ball.vdb");
     const std::filesystem::path file = studio.put(
         "with_vdb.json", R"({"tyndall": 1, "gltf": "room.gltf", "media": [{"type": "vdb", "file": "ball.vdb"},
@@ -215,7 +215,7 @@ TEST(SceneSession, NoticesFilesThatChange) {
 }
 
 TEST(SceneSession, SavingIsNoChangeToNotice) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     set(session, "exposure", "2.125");
     save(session);
@@ -223,7 +223,7 @@ TEST(SceneSession, SavingIsNoChangeToNotice) {
 }
 
 TEST(SceneSession, ReloadMakesUnsavedEditsAgainAndSaysWhatIsLost) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     set(session, "exposure", "1");
     save(session);
@@ -253,7 +253,7 @@ TEST(SceneSession, ReloadMakesUnsavedEditsAgainAndSaysWhatIsLost) {
 }
 
 TEST(SceneSession, AReloadThatFailsLeavesEverythingAndWaitsForTheNextChange) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     set(session, "exposure", "1");
     const std::vector<std::string> before = state_of(session.scene);
@@ -271,7 +271,7 @@ TEST(SceneSession, AReloadThatFailsLeavesEverythingAndWaitsForTheNextChange) {
 }
 
 TEST(SceneSession, ReloadAfterUndoingWhatWasSavedSaysSo) {
-    const Studio studio;
+    const SceneFolder studio;
     SceneSession session = open_session(studio.file);
     set(session, "exposure", "1"), set(session, "ambient", "0.5");
     save(session);

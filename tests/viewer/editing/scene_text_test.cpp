@@ -13,7 +13,7 @@ namespace tyndall::test {
 namespace {
 // The text after edits that were also made in memory; the two must then say the same.
 struct Bench {
-    Studio studio;
+    SceneFolder studio;
     std::string text;
     Scene scene;
     std::vector<Edit> edits;
@@ -120,14 +120,14 @@ TEST(SceneText, TheLimitsOfTheTableAreThoseOfTheSchema) {
             return false; // neighbours forbid it
         }
         EXPECT_NO_THROW(edited_text(start.text, scene, singles))
-            << place_of(scene, edit.part, index) << property.name << value;
+            << part_path(scene, edit.part, index) << property.name << value;
         return true;
     };
     int tried = 0;
     for (const Part part : {Part::light, Part::medium, Part::camera, Part::scene})
         for (size_t i = 0; i < count_of(start.scene, part); ++i)
             for (const Property* property : properties_of(start.scene, part, i))
-                tried += try_value(*property, i, property->least) + try_value(*property, i, property->most);
+                tried += try_value(*property, i, property->min_value) + try_value(*property, i, property->max_value);
     EXPECT_GT(tried, 130);
 }
 
@@ -176,13 +176,13 @@ TEST(SceneText, RandomEditsReadBackAsTheyWereInMemory) {
 }
 
 TEST(SceneText, EveryPathOfASceneIsMoved) {
-    const Scratch scratch;
+    const TempFolder scratch;
     std::filesystem::create_directories(scratch.path() / "deep");
     const std::string text =
-        moved_text(R"({"lights": [{"name": "file", "image": "a.hdr", "ies": {"file": "b.ies"}, "gobo":
+        rebase_paths(R"({"lights": [{"name": "file", "image": "a.hdr", "ies": {"file": "b.ies"}, "gobo":
         {"image": "c.####.png"}}], "media": [{"file": "d.vdb", "phase": {"mix": [{"file": "e.txt"}]}, "grids": {"albedo":
         {"grid": "file", "file": "f.vdb"}}, "recipe": "/g.json"}]})",
-                   scratch.path(), scratch.path() / "deep");
+                     scratch.path(), scratch.path() / "deep");
     for (const char* moved : {"\"../a.hdr\"", "\"../b.ies\"", "\"../c.####.png\"", "\"../d.vdb\"", "\"../e.txt\"",
                               "\"../f.vdb\"", "\"name\": \"file\"", "\"grid\": \"file\"", "\"/g.json\""})
         EXPECT_NE(text.find(moved), text.npos) << moved << " in " << text;
@@ -192,10 +192,10 @@ TEST(SceneText, PathsMeanTheSameFilesFromAnotherFolder) {
     Bench bench;
     const std::filesystem::path folder = bench.studio.path();
     std::filesystem::create_directories(folder / "other/deep");
-    const std::string text = moved_text(rich_scene, folder, folder / "other/deep");
+    const std::string text = rebase_paths(rich_scene, folder, folder / "other/deep");
     EXPECT_NE(text.find("\"gltf\": \"../../room.gltf\""), text.npos);
     EXPECT_NE(text.find("\"recipe\": \"../../fog/dust.json\""), text.npos);
     EXPECT_EQ(state_of(load_scene(bench.studio.put("other/deep/scene.json", text))), state_of(bench.scene));
-    EXPECT_EQ(moved_text(rich_scene, folder, folder / "other/.."), rich_scene);
+    EXPECT_EQ(rebase_paths(rich_scene, folder, folder / "other/.."), rich_scene);
 }
 }

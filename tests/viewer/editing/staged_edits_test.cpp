@@ -52,7 +52,7 @@ TEST(StagedEdits, PicturesFollowEditsAndKeepTheTriangles) {
 }
 
 TEST(StagedEdits, AFileHasTheEditsOfItsTimeAndLeavesTheNextPicturesAlone) {
-    Scratch directory;
+    TempFolder directory;
     ViewState state = small_state();
     act(state, "edit lights/sun/intensity 9");
     SaveJob before;

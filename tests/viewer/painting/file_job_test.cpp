@@ -22,7 +22,7 @@ namespace tyndall::test {
 namespace {
 // A scene of one sun over a patch of fog from a recipe, read from files.
 struct FileJobs : testing::Test {
-    Scratch directory;
+    TempFolder directory;
     ViewState state;
     std::atomic<bool> cancel{false};
 
@@ -52,7 +52,7 @@ struct FileJobs : testing::Test {
     RenderRequest sequence(const char* range, bool png = false) const {
         return sequence_request(state, path("out.####.exr"), range, png, "avx2");
     }
-    RenderFiles frames(const char* range, bool png = false) const { return render_files(state, sequence(range, png)); }
+    RenderJob frames(const char* range, bool png = false) const { return render_job(state, sequence(range, png)); }
 };
 
 std::vector<float> pixels(const std::filesystem::path& file) {
@@ -64,7 +64,7 @@ std::vector<float> pixels(const std::filesystem::path& file) {
 
 TEST_F(FileJobs, FramesAreThoseOfTheEditedSceneAndKeptWhenRight) {
     edit_scene(state, "lights/sun/intensity", "7", 0);
-    const RenderFiles files = frames("", true);
+    const RenderJob files = frames("", true);
     EXPECT_EQ(files.request.frames, (std::vector<int>{1, 2, 3}));
     edit_scene(state, "lights/sun/intensity", "1", 0); // later edits are no matter of the job
     const JobResult result = run(files);
@@ -91,7 +91,7 @@ TEST_F(FileJobs, FramesAreThoseOfTheEditedSceneAndKeptWhenRight) {
 
 TEST_F(FileJobs, TheCameraMovedByHandCounts) {
     apply(state, parse_action("orbit 30 10"));
-    const RenderFiles files = frames("1");
+    const RenderJob files = frames("1");
     const Camera wanted = camera_now(state);
     const Camera made = camera_at(*files.scene, find_camera(*files.scene, files.request.camera), 0);
     EXPECT_LT(glm::distance(made.position, wanted.position), 1e-6f);
@@ -104,7 +104,7 @@ TEST_F(FileJobs, TheCameraMovedByHandCounts) {
 TEST_F(FileJobs, FogIsThatOfTheMediumAsEdited) {
     edit_scene(state, "media/wisps/wind", "0 3 0", 0);
     EXPECT_EQ(bakeable_media(*state.scene), std::vector<std::string>{"wisps"});
-    EXPECT_EQ(run(bake_files(state, "wisps", path("fog.####.vdb"), "5")).code, ExitCode::ok);
+    EXPECT_EQ(run(bake_job(state, "wisps", path("fog.####.vdb"), "5")).code, ExitCode::ok);
     FogRecipe recipe = read_recipe(path("fog.json"));
     recipe.wind = {0, 3, 0}, recipe.frame_rate = 12, recipe.extinction = 0.7f;
     Progress progress(ProgressStyle::silent, "bake", 1);
@@ -113,16 +113,16 @@ TEST_F(FileJobs, FogIsThatOfTheMediumAsEdited) {
 }
 
 TEST_F(FileJobs, MistakesSayWhatIsWrong) {
-    const auto usage = [&](const auto& body) { return error_text(ExitCode::usage, body); };
+    const auto usage = [&](const auto& body) { return error_message(ExitCode::usage, body); };
     EXPECT_NE(usage([&] { frames("1-"); }).find("1-"), std::string::npos);
     EXPECT_NE(usage([&] { sequence_request(state, "out.exr", "", false, ""); }).find("####"), std::string::npos);
-    EXPECT_NE(usage([&] { bake_files(state, "haze", "fog.####.vdb", ""); }).find("wisps"), std::string::npos);
-    EXPECT_NE(usage([&] { bake_files(state, "wisps", "fog.exr", "1"); }).find(".vdb"), std::string::npos);
+    EXPECT_NE(usage([&] { bake_job(state, "haze", "fog.####.vdb", ""); }).find("wisps"), std::string::npos);
+    EXPECT_NE(usage([&] { bake_job(state, "wisps", "fog.exr", "1"); }).find(".vdb"), std::string::npos);
     std::ofstream(path("file")) << "in the way";
-    EXPECT_EQ(run(render_files(state, sequence_request(state, path("file/out.####.exr"), "", false, ""))).code,
+    EXPECT_EQ(run(render_job(state, sequence_request(state, path("file/out.####.exr"), "", false, ""))).code,
               ExitCode::unwritable);
     const std::string endless(300, 'a'); // longer than any file system's names
-    EXPECT_EQ(run(render_files(state, sequence_request(state, path((endless + ".exr").c_str()), "1", false, ""))).code,
+    EXPECT_EQ(run(render_job(state, sequence_request(state, path((endless + ".exr").c_str()), "1", false, ""))).code,
               ExitCode::unwritable);
     const ViewState empty;
     usage([&] { sequence_request(empty, "out.####.exr", "1", false, ""); });
@@ -140,10 +140,10 @@ TEST_F(FileJobs, TheCommandSaysWhatIsShown) {
         EXPECT_NE(command.find(part), std::string::npos) << command;
     EXPECT_EQ(command.find("march.step_depth"), std::string::npos) << command; // final's own again
     apply(state, parse_action("orbit 5 5"));
-    error_text(ExitCode::usage, [&] { command_of(state, sequence("1")); });
+    error_message(ExitCode::usage, [&] { command_of(state, sequence("1")); });
     apply(state, parse_action("camera"));
     edit_scene(state, "lights/sun/intensity", "7", 0);
-    error_text(ExitCode::usage, [&] { command_of(state, sequence("1")); });
+    error_message(ExitCode::usage, [&] { command_of(state, sequence("1")); });
 }
 
 TEST_F(FileJobs, AThreadDoesOneAtATimeAndStops) {
@@ -154,23 +154,23 @@ TEST_F(FileJobs, AThreadDoesOneAtATimeAndStops) {
     thread.start(frames("1-400"));
     ASSERT_TRUE(thread.status());
     EXPECT_EQ(thread.status()->frames, 400);
-    error_text(ExitCode::usage, [&] { thread.start(frames("1")); });
-    EXPECT_TRUE(comes([&] { return thread.status()->share > 0; }));
+    error_message(ExitCode::usage, [&] { thread.start(frames("1")); });
+    EXPECT_TRUE(eventually([&] { return thread.status()->share > 0; }));
     thread.stop();
     const std::optional<JobStatus> status = thread.status();
     EXPECT_TRUE(status && status->stopping); // until the result is taken
     std::optional<JobResult> result;
-    ASSERT_TRUE(comes([&] { return (result = thread.take_result()).has_value(); }));
+    ASSERT_TRUE(eventually([&] { return (result = thread.take_result()).has_value(); }));
     EXPECT_NE(result->message.find("stopped"), std::string::npos) << result->message;
     EXPECT_NE(result->message.find("of 400 frames"), std::string::npos) << result->message;
     EXPECT_FALSE(thread.status());
-    EXPECT_TRUE(comes([&] { return news == 1; }));
+    EXPECT_TRUE(eventually([&] { return news == 1; }));
     for (const auto& entry : std::filesystem::directory_iterator(directory.path()))
         if (entry.path().extension() == ".exr") read_exr(entry.path()); // throws when it is partial
 
     state.settings.pixel.samples = 1;
     thread.start(frames("1"));
-    ASSERT_TRUE(comes([&] { return (result = thread.take_result()).has_value(); }));
+    ASSERT_TRUE(eventually([&] { return (result = thread.take_result()).has_value(); }));
     EXPECT_EQ(result->code, ExitCode::ok) << result->message;
 }
 
@@ -178,11 +178,11 @@ TEST_F(FileJobs, AWindowThatClosesAsksAboutTheJob) {
     state.job = JobStatus{"render out.####.exr", 10};
     apply(state, parse_action("close"));
     EXPECT_TRUE(state.asked);
-    EXPECT_FALSE(state.leaving);
+    EXPECT_FALSE(state.closing);
     apply(state, parse_action("answer cancel"));
-    EXPECT_FALSE(state.leaving);
+    EXPECT_FALSE(state.closing);
     apply(state, parse_action("close"));
     apply(state, parse_action("answer discard"));
-    EXPECT_TRUE(state.leaving);
+    EXPECT_TRUE(state.closing);
 }
 }

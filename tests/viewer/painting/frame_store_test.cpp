@@ -39,7 +39,7 @@ SparseVolume one_voxel() {
 }
 
 // Frames 1 to 5 of a sequence that has 1, 2 and 4.
-std::shared_ptr<Scene> scene_with_gap(const Scratch& directory) {
+std::shared_ptr<Scene> scene_with_gap(const TempFolder& directory) {
     for (const char* name : {"smoke.0001.vdb", "smoke.0002.vdb", "smoke.0004.vdb"})
         write_vdb(directory.path() / name, one_voxel());
     Scene scene = *small_scene();
@@ -90,8 +90,8 @@ TEST(FrameStore, TheNextFrameIsMadeAheadOnce) {
     FrameStore store(0);
     store.begin(scene, MissingFrame::error);
     const Snapshot one = at_frame(scene, 1);
-    EXPECT_TRUE(store.make_ahead(2, one));
-    EXPECT_FALSE(store.make_ahead(2, one));
+    EXPECT_TRUE(store.prefetch(2, one));
+    EXPECT_FALSE(store.prefetch(2, one));
     double seconds = 0;
     const auto two = store.take(2, seconds);
     ASSERT_TRUE(two);
@@ -101,12 +101,12 @@ TEST(FrameStore, TheNextFrameIsMadeAheadOnce) {
 }
 
 TEST(FrameStore, AFileThatIsMissingIsSaidWhenItsFrameIsAskedFor) {
-    const Scratch directory;
+    const TempFolder directory;
     const auto scene = scene_with_gap(directory);
     FrameStore store;
     store.begin(scene, MissingFrame::error);
-    EXPECT_FALSE(store.make_ahead(3, at_frame(scene, 2)));
-    EXPECT_TRUE(store.make_ahead(4, at_frame(scene, 2)));
+    EXPECT_FALSE(store.prefetch(3, at_frame(scene, 2)));
+    EXPECT_TRUE(store.prefetch(4, at_frame(scene, 2)));
 }
 
 TEST(FrameStore, ALoopIsGrownOnceAndLooksTheSame) {
@@ -136,14 +136,14 @@ TEST(FrameStore, WhilePlayingThePainterMakesTheNextFrameAfterThePicture) {
     request.next_frame = 2;
     ASSERT_TRUE(paint(painter, request, never));
     EXPECT_FALSE(paint(painter, request, never)) << "no picture, but the next frame's fog";
-    EXPECT_FALSE(painter.store.make_ahead(2, painter.snapshot)) << "it is there";
+    EXPECT_FALSE(painter.store.prefetch(2, painter.snapshot)) << "it is there";
     const auto next = paint(painter, playing(scene, 2), never);
     ASSERT_TRUE(next);
     EXPECT_GT(next->times.load, 0) << "its cost counts for the rate";
 }
 
 TEST(MissingFrames, GapsAreListedAndSaid) {
-    const Scratch directory;
+    const TempFolder directory;
     const auto scene = scene_with_gap(directory);
     EXPECT_EQ(missing_frames(*scene), std::vector<int>{3}) << "5 holds the last, which is no gap";
     EXPECT_EQ(missing_text(*scene, 2, MissingFrame::error), "");
@@ -155,7 +155,7 @@ TEST(MissingFrames, GapsAreListedAndSaid) {
 }
 
 TEST(MissingFrames, ThePolicyIsAnActionAndOtherPictures) {
-    const Scratch directory;
+    const TempFolder directory;
     ViewState state;
     take_scene(state, scene_with_gap(directory));
     EXPECT_EQ(state.gaps, std::vector<int>{3});

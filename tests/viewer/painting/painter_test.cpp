@@ -23,7 +23,7 @@ Image<glm::u8vec4> rendered(const Request& request, int samples) {
     view.pixel_samples = samples;
     const Snapshot snapshot = make_snapshot(*request.scene, moment_of(*request.scene, request.frame));
     FrameStats stats;
-    return toned(render_frame(find_mode(request.mode), view, snapshot, request.settings, {}, stats), request.shown);
+    return tone_map(render_frame(find_mode(request.mode), view, snapshot, request.settings, {}, stats), request.shown);
 }
 
 }
@@ -182,7 +182,7 @@ TEST(Painter, AStillPictureThatHasBegunIsNotReplacedByAQuickOne) {
 
 TEST(SavePicture, FilesAreThoseOfRender) {
     flush_denormals();
-    Scratch directory;
+    TempFolder directory;
     const std::filesystem::path file = directory.path() / "scene.json";
     std::ofstream(file) << "{}";
     Scene copy = *small_scene(file);
@@ -202,7 +202,7 @@ TEST(SavePicture, FilesAreThoseOfRender) {
         job.scene_file = file, job.output = (directory.path() / "b.exr").string(), job.frames = {1};
         job.mode = mode, job.settings = settings_for(Quality::preview), job.isa = "avx2", job.png = true;
         Progress progress(ProgressStyle::silent, "render", 1);
-        render_sequence(*scene, job, plan_as_asked(job), progress, never);
+        render_sequence(*scene, job, requested_plan(job), progress, never);
         // The size is the scene's either way; only the command in the header spells it out, and the name of the file.
         const auto nameless = [&](const char* name) {
             return without_names(bytes_of(directory.path() / name), {name});
@@ -213,17 +213,17 @@ TEST(SavePicture, FilesAreThoseOfRender) {
 }
 
 TEST(SavePicture, RefusesOtherKindsAndTheScenesOwnFiles) {
-    Scratch directory;
+    TempFolder directory;
     Scene copy = *small_scene();
     copy.inputs = {{directory.path() / "plate.png", "x"}};
     std::ofstream(copy.inputs[0].path) << "x";
     SaveJob save;
     save.request = request_for(std::make_shared<Scene>(copy));
     save.file = directory.path() / "a.jpg";
-    error_text(ExitCode::usage, [&] { save_picture(save, nullptr, never, {}); });
+    error_message(ExitCode::usage, [&] { save_picture(save, nullptr, never, {}); });
     save.file = copy.inputs[0].path;
-    error_text(ExitCode::usage, [&] { save_picture(save, nullptr, never, {}); });
+    error_message(ExitCode::usage, [&] { save_picture(save, nullptr, never, {}); });
     save.file = "/proc/nowhere/a.exr";
-    error_text(ExitCode::unwritable, [&] { save_picture(save, nullptr, never, {}); });
+    error_message(ExitCode::unwritable, [&] { save_picture(save, nullptr, never, {}); });
 }
 }

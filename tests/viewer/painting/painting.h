@@ -17,7 +17,7 @@ inline std::atomic<bool> never{false}; // cancelled
 std::vector<ShownPicture> paint_all(Painter& painter, const Request& request);
 
 // Whether the condition comes true within ten seconds.
-template<class Condition> bool comes(const Condition& condition) {
+template<class Condition> bool eventually(const Condition& condition) {
     for (int i = 0; i < 5000; ++i) {
         if (condition()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds(2));

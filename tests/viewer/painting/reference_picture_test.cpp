@@ -43,10 +43,10 @@ Layers exact_march(Request request) {
     Request one = request;
     one.settings.pixel.samples = 1;
     Layers layers = rendered(request, final_march(request.settings));
-    const Layers exact = rendered(one, truth_of(one.settings)), look = rendered(one, final_march(one.settings));
+    const Layers exact = rendered(one, truth_settings(one.settings)), coarse = rendered(one, final_march(one.settings));
     for (size_t i = 0; i < layers.color.pixels.size(); ++i) {
-        layers.color.pixels[i] += exact.color.pixels[i] - look.color.pixels[i];
-        layers.inscatter.pixels[i] += exact.inscatter.pixels[i] - look.inscatter.pixels[i];
+        layers.color.pixels[i] += exact.color.pixels[i] - coarse.color.pixels[i];
+        layers.inscatter.pixels[i] += exact.inscatter.pixels[i] - coarse.inscatter.pixels[i];
     }
     return layers;
 }
@@ -68,8 +68,8 @@ TEST(ReferencePicture, IsTheExactMarchOfTheSameView) {
     EXPECT_TRUE(picture.finished);
     ASSERT_EQ(picture.across, 2);
     ASSERT_EQ(picture.codes.size, ivec2(2 * request.size.x, request.size.y));
-    const auto left = toned(rendered(request, request.settings), request.shown);
-    const auto right = toned(exact_march(request), request.shown);
+    const auto left = tone_map(rendered(request, request.settings), request.shown);
+    const auto right = tone_map(exact_march(request), request.shown);
     ASSERT_NE(left.pixels, right.pixels);
     for (int y = 0; y < request.size.y; ++y)
         for (int x = 0; x < request.size.x; ++x) {

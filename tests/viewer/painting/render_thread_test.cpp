@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 // Pictures until one is finished.
 std::shared_ptr<const ShownPicture> finished(RenderThread& thread, uint64_t revision) {
     std::shared_ptr<const ShownPicture> picture;
-    comes([&] {
+    eventually([&] {
         if (auto newer = thread.take_picture()) picture = newer;
         return picture && picture->finished && picture->revision == revision;
     });
@@ -40,7 +40,7 @@ TEST(RenderThread, TheNewestRequestIsFinished) {
     ASSERT_TRUE(picture && picture->finished);
     EXPECT_EQ(picture->frame, 2);
     EXPECT_EQ(picture->samples, request.max_samples);
-    EXPECT_TRUE(comes([&] { return thread.idle(); }));
+    EXPECT_TRUE(eventually([&] { return thread.idle(); }));
     EXPECT_GT(news, 0);
 }
 
@@ -49,7 +49,7 @@ TEST(RenderThread, PostingNeverWaits) {
     Request request = request_for(small_scene(), "path");
     request.size = {640, 400}, request.max_samples = 1 << 20; // takes for ever
     thread.post(request);
-    EXPECT_TRUE(comes([&] { return thread.take_picture() != nullptr; }));
+    EXPECT_TRUE(eventually([&] { return thread.take_picture() != nullptr; }));
     double longest = 0;
     for (int i = 0; i < 100; ++i) {
         const double start = steady_seconds();
@@ -78,7 +78,7 @@ TEST(RenderThread, MovingRequestsDoNotStarve) {
 }
 
 TEST(RenderThread, WritesFilesAndSaysWhatWentWrong) {
-    Scratch directory;
+    TempFolder directory;
     RenderThread thread;
     SaveJob save;
     save.request = request_for(small_scene());
@@ -86,8 +86,8 @@ TEST(RenderThread, WritesFilesAndSaysWhatWentWrong) {
     thread.save(save);
     save.file = "/proc/nowhere/a.png";
     thread.save(save);
-    std::vector<Saved> saved;
-    comes([&] {
+    std::vector<SaveResult> saved;
+    eventually([&] {
         if (auto one = thread.take_saved()) saved.push_back(*one);
         return saved.size() == 2;
     });
@@ -95,7 +95,7 @@ TEST(RenderThread, WritesFilesAndSaysWhatWentWrong) {
     EXPECT_EQ(saved[0].error, "");
     EXPECT_TRUE(std::filesystem::exists(directory.path() / "a.png"));
     EXPECT_EQ(static_cast<int>(saved[1].code), static_cast<int>(ExitCode::unwritable));
-    EXPECT_TRUE(comes([&] { return thread.idle(); }));
+    EXPECT_TRUE(eventually([&] { return thread.idle(); }));
 }
 
 TEST(SceneLoader, ReadsBesideAndSaysWhatWentWrong) {
@@ -105,19 +105,19 @@ TEST(SceneLoader, ReadsBesideAndSaysWhatWentWrong) {
     loader.start(TYNDALL_SOURCE_DIR "/scenes/pillars.json", {}, [&] { ++done; });
     loader.start(TYNDALL_SOURCE_DIR "/scenes/window.json", {}, [&] { ++done; }); // forgets the first
     std::optional<LoadedScene> loaded;
-    ASSERT_TRUE(comes([&] { return (loaded = loader.take()).has_value(); }));
+    ASSERT_TRUE(eventually([&] { return (loaded = loader.take()).has_value(); }));
     ASSERT_TRUE(loaded->session);
     EXPECT_EQ(loaded->session->scene.file.filename(), "window.json");
     EXPECT_FALSE(loader.loading());
     loader.start("/nowhere.json", {});
-    ASSERT_TRUE(comes([&] { return (loaded = loader.take()).has_value(); }));
+    ASSERT_TRUE(eventually([&] { return (loaded = loader.take()).has_value(); }));
     EXPECT_FALSE(loaded->session);
     EXPECT_EQ(static_cast<int>(loaded->code), static_cast<int>(ExitCode::unreadable));
-    EXPECT_TRUE(comes([&] { return done == 2; }));
+    EXPECT_TRUE(eventually([&] { return done == 2; }));
 }
 
 TEST(SceneLoader, FilesAreKnownAsTheyWereRead) {
-    Scratch directory;
+    TempFolder directory;
     const std::filesystem::path file = directory.path() / "a.json";
     std::ofstream(file) << R"({"tyndall": 1, "camera": {"position": [0, 0, 1], "target": [0, 0, 0]}})";
     const auto now = std::filesystem::file_time_type::clock::now();
@@ -126,7 +126,7 @@ TEST(SceneLoader, FilesAreKnownAsTheyWereRead) {
         SceneLoader loader;
         std::optional<LoadedScene> loaded;
         loader.start(file, {});
-        ASSERT_TRUE(comes([&] { return (loaded = loader.take()).has_value(); }));
+        ASSERT_TRUE(eventually([&] { return (loaded = loader.take()).has_value(); }));
         ASSERT_EQ(loaded->error, "");
         EXPECT_TRUE(changed_inputs(loaded->session->inputs).empty());
         std::filesystem::last_write_time(file, written + 1s);

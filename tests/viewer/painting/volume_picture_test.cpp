@@ -21,7 +21,7 @@ VolumePicture asked(const Request& request) {
 }
 
 // 16 x 8 x 8 voxels of 0.5 m, centres of the first at 0.25: the density rises along x only, 0 to 15 sixteenths.
-std::shared_ptr<Scene> scene_with_ramp(const Scratch& directory) {
+std::shared_ptr<Scene> scene_with_ramp(const TempFolder& directory) {
     SparseVolume volume;
     volume.index_to_world = glm::translate(dmat4(1), dvec3(0.25)) * glm::scale(dmat4(1), dvec3(0.5));
     volume.active_low = ivec3(0), volume.active_high = ivec3(15, 7, 7);
@@ -47,9 +47,9 @@ double lightness(glm::u8vec4 code) { return 0.2126 * code.x + 0.7152 * code.y + 
 }
 
 TEST(VolumePicture, ASliceShowsTheDensityWhereItIs) {
-    const Scratch directory;
+    const TempFolder directory;
     Request request = request_for(scene_with_ramp(directory));
-    request.volume = VolumeQuestion{"ramp", VolumeLook::slice, 2, 0.5f};
+    request.volume = VolumeRequest{"ramp", VolumeLook::slice, 2, 0.5f};
     const VolumePicture shown = asked(request);
     EXPECT_EQ(shown.medium, "ramp");
     EXPECT_EQ(shown.right, 0);
@@ -71,9 +71,9 @@ TEST(VolumePicture, ASliceShowsTheDensityWhereItIs) {
 }
 
 TEST(VolumePicture, MaximumAndMeanAreAlongTheAxis) {
-    const Scratch directory;
+    const TempFolder directory;
     Request request = request_for(scene_with_ramp(directory));
-    request.volume = VolumeQuestion{"", VolumeLook::maximum, 0, 0};
+    request.volume = VolumeRequest{"", VolumeLook::maximum, 0, 0};
     const VolumePicture most = asked(request);
     EXPECT_EQ(most.right, 2);
     const glm::u8vec4 middle = most.codes.at(most.codes.size.x / 2, most.codes.size.y / 2);
@@ -84,9 +84,9 @@ TEST(VolumePicture, MaximumAndMeanAreAlongTheAxis) {
 }
 
 TEST(VolumePicture, FactsAreThoseOfTyndallInfo) {
-    const Scratch directory;
+    const TempFolder directory;
     Request request = request_for(scene_with_ramp(directory));
-    request.volume = VolumeQuestion{};
+    request.volume = VolumeRequest{};
     const VolumePicture shown = asked(request);
     EXPECT_EQ(fact(shown, "file"), "ramp.vdb");
     EXPECT_NE(fact(shown, "grid").find("density: float, fog volume, usable as fog"), std::string::npos);
@@ -98,7 +98,7 @@ TEST(VolumePicture, FactsAreThoseOfTyndallInfo) {
 
 TEST(VolumePicture, EvenFogAndNoFogAreShownToo) {
     Request request = request_for(small_scene());
-    request.volume = VolumeQuestion{"haze", VolumeLook::slice, 1, 0.25f};
+    request.volume = VolumeRequest{"haze", VolumeLook::slice, 1, 0.25f};
     const VolumePicture even = asked(request);
     EXPECT_EQ(even.box.low, vec3(-3));
     EXPECT_NEAR(even.place, -1.5, 1e-6);
@@ -115,7 +115,7 @@ TEST(VolumePicture, ComesWithThePictureAndFollowsTheQuestion) {
     flush_denormals();
     Painter painter;
     Request request = request_for(small_scene(), "cone");
-    request.max_samples = 1, request.volume = VolumeQuestion{};
+    request.max_samples = 1, request.volume = VolumeRequest{};
     const auto first = paint(painter, request, never);
     ASSERT_TRUE(first && first->volume);
     EXPECT_EQ(first->volume->question.axis, 2);
@@ -135,17 +135,18 @@ TEST(VolumePicture, LooksAreActions) {
     const uint64_t revision = state.revision;
     EXPECT_FALSE(request_of(state, false).volume);
     apply(state, parse_action("slice y 0.25"));
-    EXPECT_EQ(*request_of(state, false).volume, (VolumeQuestion{"", VolumeLook::slice, 1, 0.25f}));
+    EXPECT_EQ(*request_of(state, false).volume, (VolumeRequest{"", VolumeLook::slice, 1, 0.25f}));
     apply(state, parse_action("project x mean"));
-    EXPECT_EQ(*request_of(state, false).volume, (VolumeQuestion{"", VolumeLook::mean, 0, 0.25f}));
+    EXPECT_EQ(*request_of(state, false).volume, (VolumeRequest{"", VolumeLook::mean, 0, 0.25f}));
     apply(state, parse_action("medium haze"));
     EXPECT_EQ(request_of(state, false).volume->medium, "haze");
-    EXPECT_NE(error_text(ExitCode::usage, [&] { apply(state, parse_action("medium smoke")); }).find("available: haze"),
-              std::string::npos);
+    EXPECT_NE(
+        error_message(ExitCode::usage, [&] { apply(state, parse_action("medium smoke")); }).find("available: haze"),
+        std::string::npos);
     apply(state, parse_action("volume off"));
     EXPECT_FALSE(request_of(state, false).volume);
     EXPECT_EQ(state.revision, revision) << "the picture stays";
-    error_text(ExitCode::refused, [] { parse_action("slice w 0.5"); });
-    error_text(ExitCode::refused, [] { parse_action("project x least"); });
+    error_message(ExitCode::refused, [] { parse_action("slice w 0.5"); });
+    error_message(ExitCode::refused, [] { parse_action("project x least"); });
 }
 }

@@ -11,19 +11,19 @@ TEST(Script, LinesBecomeActions) {
     ASSERT_EQ(actions.size(), 8u);
     EXPECT_EQ(actions[0].verb, Verb::orbit);
     EXPECT_EQ(actions[0].numbers, (std::vector<double>{30, -5.5}));
-    EXPECT_EQ(actions[0].place, "a.txt:3");
+    EXPECT_EQ(actions[0].location, "a.txt:3");
     EXPECT_EQ(actions[1].words, (std::vector<std::string>{"my camera"}));
     EXPECT_TRUE(actions[2].words.empty());
     EXPECT_EQ(actions[3].numbers, (std::vector<double>{10, 20, 30, 40.5}));
     EXPECT_EQ(actions[4].words, (std::vector<std::string>{"march.nodes", "6"}));
     EXPECT_EQ(actions[5].numbers, (std::vector<double>{4}));
     EXPECT_EQ(actions[6].words, (std::vector<std::string>{"0.5"}));
-    EXPECT_EQ(actions[7].place, "a.txt:10");
+    EXPECT_EQ(actions[7].location, "a.txt:10");
 }
 
 TEST(Script, MistakesAreNamedWithFileAndLine) {
     const auto message = [](const char* text) {
-        return error_text(ExitCode::refused, [&] { parse_script(text, "b.txt"); });
+        return error_message(ExitCode::refused, [&] { parse_script(text, "b.txt"); });
     };
     EXPECT_EQ(message("quit\norbt 1 2"), "b.txt:2: no action 'orbt'; did you mean orbit?");
     EXPECT_EQ(message("orbit 1"), "b.txt:1: expected orbit x y");

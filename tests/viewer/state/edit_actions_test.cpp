@@ -15,7 +15,7 @@
 namespace tyndall::test {
 namespace {
 struct Edited {
-    Studio studio;
+    SceneFolder studio;
     ViewState state;
     explicit Edited(std::string_view text = rich_scene) : studio(text) { open(studio.file); }
 
@@ -88,15 +88,15 @@ TEST(EditActions, RefusedEditsChangeNothing) {
     Edited edited;
     const std::vector<std::string> before = state_of(*edited.state.scene);
     const uint64_t revision = edited.state.revision;
-    EXPECT_NE(error_text(ExitCode::refused, [&] { edited("edit lights/5/outer_cone 5"); }).find("inner_cone"),
+    EXPECT_NE(error_message(ExitCode::refused, [&] { edited("edit lights/5/outer_cone 5"); }).find("inner_cone"),
               std::string::npos);
-    error_text(ExitCode::usage, [&] { edited("edit lights/nobody/intensity 5"); });
-    error_text(ExitCode::usage, [&] { edited("edit media/0/colour 5"); });
+    error_message(ExitCode::usage, [&] { edited("edit lights/nobody/intensity 5"); });
+    error_message(ExitCode::usage, [&] { edited("edit media/0/colour 5"); });
     EXPECT_EQ(state_of(*edited.state.scene), before);
     EXPECT_EQ(edited.state.revision, revision);
     EXPECT_FALSE(has_unsaved_changes(*edited.state.session));
     ViewState empty;
-    error_text(ExitCode::usage, [&] { apply(empty, parse_action("undo")); });
+    error_message(ExitCode::usage, [&] { apply(empty, parse_action("undo")); });
 }
 
 TEST(EditActions, SavingWritesAndAnotherFileIsGoneOnWith) {
@@ -130,7 +130,7 @@ TEST(EditActions, UnsavedEditsSurviveReadingAgainAndLostOnesAreTold) {
     EXPECT_TRUE(edited.state.message_is_error);
     EXPECT_NE(edited.state.message.find("media/dust/g"), std::string::npos) << edited.state.message;
     EXPECT_FALSE(edited.state.reloading);
-    EXPECT_EQ(edited.state.selected, (Thing{Part::light, 5})) << "where it stands now";
+    EXPECT_EQ(edited.state.selected, (PartRef{Part::light, 5})) << "where it stands now";
     edited.open(edited.studio.file); // asked for: as the file is
     EXPECT_NE(edited.state.scene->lights.back().intensity.at(0), 31);
     EXPECT_FALSE(has_unsaved_changes(*edited.state.session));
@@ -193,33 +193,33 @@ TEST(EditActions, HandsAreAskedBeforeEditsAreLost) {
     Edited edited;
     const std::filesystem::path own = edited.studio.file;
     edited("close");
-    EXPECT_TRUE(edited.state.leaving) << "nothing to lose";
-    edited.state.leaving = false;
+    EXPECT_TRUE(edited.state.closing) << "nothing to lose";
+    edited.state.closing = false;
     edited("edit ambient 0.3");
 
     edited("close");
-    EXPECT_FALSE(edited.state.leaving);
+    EXPECT_FALSE(edited.state.closing);
     ASSERT_TRUE(edited.state.asked);
     edited("answer cancel");
-    EXPECT_FALSE(edited.state.asked || edited.state.leaving);
+    EXPECT_FALSE(edited.state.asked || edited.state.closing);
 
     edited("open other.json");
     ASSERT_TRUE(edited.state.asked);
     EXPECT_EQ(edited.state.loads, 0);
-    error_text(ExitCode::usage, [&] { edited("answer maybe"); });
+    error_message(ExitCode::usage, [&] { edited("answer maybe"); });
     edited("answer discard");
     EXPECT_EQ(edited.state.loads, 1);
     EXPECT_EQ(edited.state.scene_file, "other.json");
-    error_text(ExitCode::usage, [&] { edited("answer save"); });
+    error_message(ExitCode::usage, [&] { edited("answer save"); });
 
     apply(edited.state, parse_action("open third.json", "script.txt:1"));
     EXPECT_EQ(edited.state.loads, 2) << "scripts know what they do";
-    error_text(ExitCode::usage, [&] { edited("edit ambient 0.5"); }); // it would be lost in a moment
+    error_message(ExitCode::usage, [&] { edited("edit ambient 0.5"); }); // it would be lost in a moment
 
     edited.state.loading = false;
     edited("close");
     edited("answer save");
-    EXPECT_TRUE(edited.state.leaving);
+    EXPECT_TRUE(edited.state.closing);
     EXPECT_EQ(load_scene(own).ambient.at(0), vec3(0.3f));
 }
 
@@ -228,8 +228,8 @@ TEST(EditActions, WhatCannotBeSavedIsAskedOn) {
     edited("edit ambient 0.3");
     edited("close");
     edited.studio.put("scene.json", "{}"); // by somebody else
-    error_text(ExitCode::refused, [&] { edited("answer save"); });
+    error_message(ExitCode::refused, [&] { edited("answer save"); });
     EXPECT_TRUE(edited.state.asked);
-    EXPECT_FALSE(edited.state.leaving);
+    EXPECT_FALSE(edited.state.closing);
 }
 }

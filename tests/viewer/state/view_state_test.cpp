@@ -53,10 +53,10 @@ TEST(ViewState, AMeasuredExposureIsKeptUntilThePictureIsAnother) {
     act(state, "exposure scene");
     EXPECT_EQ(request_of(state, false).shown.exposure, -3);
     for (const char* line : {"camera side", "exposure auto"}) {
-        const int before = request_of(state, false).measures;
+        const int before = request_of(state, false).metering_id;
         act(state, line);
         EXPECT_FALSE(request_of(state, false).shown.exposure) << line;
-        EXPECT_GT(request_of(state, false).measures, before) << line;
+        EXPECT_GT(request_of(state, false).metering_id, before) << line;
         state.measured = -3;
     }
     act(state, "edit exposure 2");
@@ -73,7 +73,7 @@ TEST(ViewState, MistakesChangeNothing) {
           "set march.nods 4", "reset nodes", "quality best", "show fogs", "camera back", "dolly 0", "size 0 10",
           "orders 0", "tab fog", "select fog", "select lights/moon"}) {
         const uint64_t before = state.revision;
-        error_text(ExitCode::usage, [&] { act(state, line); });
+        error_message(ExitCode::usage, [&] { act(state, line); });
         EXPECT_EQ(state.revision, before) << line;
     }
 }
@@ -96,10 +96,10 @@ TEST(ViewState, AnotherSceneBeginsAnewAndTheSameOneStays) {
     act(state, "frame 3");
     act(state, "orbit 5 5");
     take_scene(state, small_scene());
-    EXPECT_TRUE(state.free);
+    EXPECT_TRUE(state.free_camera);
     EXPECT_EQ(state.frame, 3);
     take_scene(state, small_scene("other.json"));
-    EXPECT_FALSE(state.free);
+    EXPECT_FALSE(state.free_camera);
     EXPECT_EQ(state.frame, 1);
 }
 
@@ -152,10 +152,10 @@ TEST(ViewState, KeysAreActions) {
     apply(state, *action_of_key(state, "space"));
     EXPECT_FALSE(state.playing);
     apply(state, *action_of_key(state, "w"));
-    EXPECT_TRUE(state.free);
+    EXPECT_TRUE(state.free_camera);
     EXPECT_LT(state.view.camera.position.z, 4);
     apply(state, *action_of_key(state, "home"));
-    EXPECT_FALSE(state.free);
+    EXPECT_FALSE(state.free_camera);
     apply(state, *action_of_key(state, "right"));
     EXPECT_EQ(state.frame, 2);
     apply(state, *action_of_key(state, "t"));
@@ -200,9 +200,9 @@ TEST(ViewState, ScriptsDoNotWaitForWhatNeverComes) {
     ViewState state = state_with_scene();
     state.max_samples = 8;
     ScriptPlayer samples{parse_script("wait samples 9", "c.txt")}, idle{parse_script("wait idle", "c.txt")};
-    error_text(ExitCode::usage, [&] { next_action(samples, state, {}); });
+    error_message(ExitCode::usage, [&] { next_action(samples, state, {}); });
     apply(state, parse_action("play"));
-    error_text(ExitCode::usage, [&] { next_action(idle, state, {}); });
+    error_message(ExitCode::usage, [&] { next_action(idle, state, {}); });
 }
 
 TEST(ViewState, ScriptsWaitForWhatTheyAskFor) {
@@ -253,6 +253,7 @@ TEST(SettingGroups, SlidersHoldTheirValuesAndStayInRange) {
         }
     }
     EXPECT_EQ(label_of(find_row("froxel.depth_slices")), "depth slices");
-    EXPECT_NE(error_text(ExitCode::usage, [] { find_row("froxel.slices"); }).find("did you mean"), std::string::npos);
+    EXPECT_NE(error_message(ExitCode::usage, [] { find_row("froxel.slices"); }).find("did you mean"),
+              std::string::npos);
 }
 }

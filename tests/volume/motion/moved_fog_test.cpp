@@ -124,12 +124,12 @@ TEST(MovedFog, AbsurdSpeedsAreOneLine) {
     for (const float speed : {1e6f, 1e30f, 3e38f}) {
         const auto field =
             field_in({13, -3, -37}, {28, 12, -22}, [&](vec3 p) { return vec3(p.x > 20 ? speed : 0, 0, 0); });
-        EXPECT_THAT(error_text(ExitCode::refused, [&] { moved_fog(fog, field, 0.02, "medium smoke"); }),
+        EXPECT_THAT(error_message(ExitCode::refused, [&] { moved_fog(fog, field, 0.02, "medium smoke"); }),
                     HasSubstr("medium smoke: its velocity moves it by up to"))
             << speed;
     }
     const auto field = field_in({13, -3, -37}, {28, 12, -22}, [&](vec3 p) { return vec3(p.x, p.y, p.z) * 100.0f; });
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { moved_fog(fog, field, 0.7, "medium smoke"); }),
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { moved_fog(fog, field, 0.7, "medium smoke"); }),
                 HasSubstr("medium smoke"));
 }
 
@@ -142,7 +142,7 @@ testing::AuthoredGrid grid_of(const std::string& name, const std::string& type,
 
 VelocityField read_field(const std::vector<testing::AuthoredGrid>& grids, const std::vector<std::string>& names,
                          VdbReadReport* report = nullptr, const ValueMap& map = {}) {
-    const Scratch scratch;
+    const TempFolder scratch;
     return make_velocity_field(read_velocity_vdb(scratch.put("in.vdb", testing::authored(grids)), names, map, report));
 }
 
@@ -176,7 +176,7 @@ TEST(VelocityGrids, MayBeThreeOfNumbers) {
         ASSERT_TRUE(LocalVelocity(read_field(grids, names), dmat4(1)).at(vec3(1.5f), v));
         expect_near(v, vec3(-2, -4, -6), 1e-3f);
     }
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_field(grids, {"vel.x"}); }),
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { read_field(grids, {"vel.x"}); }),
                 HasSubstr("one number per voxel"));
 }
 

@@ -80,7 +80,7 @@ inline double mean_of(const std::vector<float>& values) {
     for (const float v : values) sum += v;
     return sum / static_cast<double>(values.size());
 }
-inline double spread_of(const std::vector<float>& values) {
+inline double std_dev(const std::vector<float>& values) {
     const double mean = mean_of(values);
     double sum = 0;
     for (const float v : values) sum += (v - mean) * (v - mean);
@@ -90,7 +90,7 @@ inline double correlation(const std::vector<float>& a, const std::vector<float>&
     const double ma = mean_of(a), mb = mean_of(b);
     double sum = 0;
     for (size_t i = 0; i < a.size(); ++i) sum += (a[i] - ma) * (b[i] - mb);
-    return sum / static_cast<double>(a.size()) / (spread_of(a) * spread_of(b));
+    return sum / static_cast<double>(a.size()) / (std_dev(a) * std_dev(b));
 }
 
 // Runs a test on another instruction set and goes back afterwards.

@@ -37,7 +37,7 @@ TEST(Noise, KeepsItsDigitsAMillionCellsAway) {
         const double expected = plain_sum(sum, dvec3(points.at(i)));
         ASSERT_NEAR(values[i], expected, points.at(i).x < 2e6f ? 1e-3 : 0.2) << i;
     }
-    EXPECT_GT(spread_of(values), 0.15);
+    EXPECT_GT(std_dev(values), 0.15);
 }
 
 TEST(Noise, IsFiniteAndBoundedWhereverItIsAsked) {
@@ -55,7 +55,7 @@ TEST(Noise, HasTheSpreadOfItsFormulaInEveryDirection) {
     const std::vector<float> values = noise_at({.octaves = 1}, 0, points);
     // Independent unit gradients: variance is the mean over a cell of the sum of (weight · distance)² / 3.
     EXPECT_NEAR(mean_of(values), 0, 0.003);
-    EXPECT_NEAR(spread_of(values), 0.19096 / noise_peak, 0.003);
+    EXPECT_NEAR(std_dev(values), 0.19096 / noise_peak, 0.003);
     std::vector<float> sizes;
     for (const float v : values) sizes.push_back(std::abs(v) * noise_peak);
     EXPECT_NEAR(mean_of(sizes), noise_mean_size, 0.002);
@@ -97,7 +97,7 @@ TEST(Noise, OctavesDoNotVanishTogether) {
     Points points;
     for (int i = 0; i < 4096; ++i) points.add(vec3(i % 16, i / 16 % 16, i / 256));
     const std::vector<float> values = noise_at({.octaves = 5}, 0, points);
-    EXPECT_GT(spread_of(values), 0.08);
+    EXPECT_GT(std_dev(values), 0.08);
 }
 
 TEST(Noise, SeedsMakeUnrelatedFields) {
@@ -121,7 +121,7 @@ TEST(Noise, TurnsWithoutPulseAndWithoutMirror) {
     std::vector<float> before = start;
     for (int i = 1; i <= 16; ++i) {
         const std::vector<float> now = noise_at(noise, i / 16.0f, points);
-        EXPECT_NEAR(spread_of(now) / spread_of(start), 1, 0.02) << i;
+        EXPECT_NEAR(std_dev(now) / std_dev(start), 1, 0.02) << i;
         EXPECT_GT(correlation(before, now), 0.3) << i;
         const double likeness = std::abs(correlation(start, now));
         EXPECT_LT(likeness, i > 1 && i < 15 ? 0.8 : 1.0001) << i;

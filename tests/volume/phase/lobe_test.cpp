@@ -31,16 +31,16 @@ TEST(PhaseShapes, SharesOfTheLightAreTheirIntegrals) {
         const auto value = [&](double c) { return 2 * std::numbers::pi * phase_value_of<double>(one.phase, c); };
         for (const double c : {-0.999, -0.7, 0.0, 0.4, 0.95}) {
             const double below = over_sphere([&](double x) { return x < c ? value(x) / (2 * std::numbers::pi) : 0; });
-            EXPECT_NEAR(share_below(*one.phase.shape, c), below, 2e-3)
+            EXPECT_NEAR(cosine_cdf(*one.phase.shape, c), below, 2e-3)
                 << one.name << " " << c; // a step in the integrand
         }
-        EXPECT_NEAR(share_below(*one.phase.shape, -1), 0, 1e-6) << one.name;
-        EXPECT_NEAR(share_below(*one.phase.shape, 1), 1, 1e-6) << one.name;
+        EXPECT_NEAR(cosine_cdf(*one.phase.shape, -1), 0, 1e-6) << one.name;
+        EXPECT_NEAR(cosine_cdf(*one.phase.shape, 1), 1, 1e-6) << one.name;
         // Its slope is the value, seen where nothing has a kink.
         const bool table = one.phase.shape->lobes.empty();
         for (const double c : {-0.8, -0.3, 0.1, 0.6}) {
             const double slope =
-                (share_below(*one.phase.shape, c + 1e-3) - share_below(*one.phase.shape, c - 1e-3)) / 2e-3;
+                (cosine_cdf(*one.phase.shape, c + 1e-3) - cosine_cdf(*one.phase.shape, c - 1e-3)) / 2e-3;
             EXPECT_NEAR(slope / value(c), 1, table ? 2e-3 : 2e-4) << one.name << " " << c;
         }
     }
@@ -55,7 +55,7 @@ TEST(PhaseShapes, CosinesAreTheInversesOfTheirShares) {
         for (int i = 0; i <= 1000; ++i) {
             const double u = i / 1000.0, c = sampled_cosine(shape, u);
             ASSERT_GE(c, before - 1e-12) << one.name << " " << u;
-            ASSERT_NEAR(share_below(shape, c), u, 1e-7) << one.name << " " << u;
+            ASSERT_NEAR(cosine_cdf(shape, c), u, 1e-7) << one.name << " " << u;
             before = c;
         }
     }
@@ -74,7 +74,7 @@ TEST(PhaseShapes, DirectionsFollowTheValues) {
             ASSERT_NEAR(glm::length(direction), 1, 1e-5) << one.name;
             const dvec3 d(direction), a(axis);
             const double cosine = std::cos(std::atan2(glm::length(glm::cross(a, d)), glm::dot(a, d)));
-            const double share = share_below(*one.phase.shape, cosine);
+            const double share = cosine_cdf(*one.phase.shape, cosine);
             ++counts[std::clamp(static_cast<int>(share * bins), 0, bins - 1)];
             const double turn =
                 std::atan2(glm::dot(direction, y), glm::dot(direction, x)) / (2 * std::numbers::pi) + 0.5;

@@ -88,7 +88,7 @@ TEST(PhaseTable, WidenedIsTheMeanOverDiscs) {
         EXPECT_NEAR(mean_cosine(wide), mean_cosine(narrow), 1e-3);
         EXPECT_NEAR(phase_value_of<double>(wide, 0.3) / phase_value_of<double>(narrow, 0.3), 1, 0.01);
         const double inside =
-            (1 - share_below(*narrow.shape, std::cos(radius))) / (2 * std::numbers::pi * (1 - std::cos(radius)));
+            (1 - cosine_cdf(*narrow.shape, std::cos(radius))) / (2 * std::numbers::pi * (1 - std::cos(radius)));
         EXPECT_NEAR(phase_value_of<double>(wide, 1) / inside, 1, 0.02);
     }
 }
@@ -101,9 +101,9 @@ TEST(PhaseTable, CosinesThatAreNoneFindAValue) {
 }
 
 TEST(PhaseTable, KnowsHowNarrowItIs) {
-    EXPECT_NEAR(narrowest_lobe(tabulated_bow(0.9)), 0.9, 0.03);
-    EXPECT_NEAR(narrowest_lobe(tabulated_bow(0.97)), 0.97, 0.01);
-    EXPECT_LT(narrowest_lobe(legendre_of(0.0, 1)), 0.01);
+    EXPECT_NEAR(narrowest_g(tabulated_bow(0.9)), 0.9, 0.03);
+    EXPECT_NEAR(narrowest_g(tabulated_bow(0.97)), 0.97, 0.01);
+    EXPECT_LT(narrowest_g(legendre_of(0.0, 1)), 0.01);
 }
 }
 }

@@ -29,7 +29,7 @@ BakeReport baked(const FogRecipe& recipe, const std::string& pattern, const std:
 }
 
 TEST(Bake, WritesWhatTheRecipeSays) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const FogRecipe recipe = small_fog();
     const std::string pattern = scratch.path() / "sub" / "fog.####.vdb";
     const BakeReport report = baked(recipe, pattern, {-2, 7, 12});
@@ -42,7 +42,7 @@ TEST(Bake, WritesWhatTheRecipeSays) {
         VdbReadReport mended;
         const SparseVolume read = read_vdb(file, "density", &mended);
         EXPECT_EQ(mended.summary(), "");
-        const SparseVolume grown = grow(recipe, frame / 24.0);
+        const SparseVolume grown = generate(recipe, frame / 24.0);
         EXPECT_EQ(read.active_low, grown.active_low);
         EXPECT_EQ(read.active_high, grown.active_high);
         for (int column = 0; column < 4; ++column)
@@ -68,7 +68,7 @@ FogRecipe small_fire() {
 }
 
 TEST(Bake, FireHasItsGridsOnTheSameVoxels) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const FogRecipe recipe = small_fire();
     const std::string file = scratch.path() / "fire.vdb";
     for (const bool half : {true, false})
@@ -93,7 +93,7 @@ TEST(Bake, FireHasItsGridsOnTheSameVoxels) {
             // Values as grown, in the precision asked for; velocities, which may be negative, are read above 64.
             const double rounding = half ? 1.0 / 2048 : 1e-6, seconds = 9 / 24.0;
             const SparseVolume density = read_vdb(file), kelvin = read_vdb(file, "temperature");
-            const SparseVolume grown = grow(recipe, seconds), hot = grow_temperature(recipe, seconds);
+            const SparseVolume grown = generate(recipe, seconds), hot = generate_temperature(recipe, seconds);
             const std::string name = "vel";
             ValueMap map;
             map.offset = 64;
@@ -118,7 +118,7 @@ TEST(Bake, FireHasItsGridsOnTheSameVoxels) {
 }
 
 TEST(Bake, VelocityGoesWithAnyFog) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const std::string file = scratch.path() / "fog.vdb";
     FogRecipe recipe = small_fog();
     BakeOptions options;
@@ -137,7 +137,7 @@ TEST(Bake, VelocityGoesWithAnyFog) {
 }
 
 TEST(Bake, SaysHowItWasMade) {
-    const Scratch scratch;
+    const TempFolder scratch;
     FogRecipe recipe = small_fog();
     recipe.albedo = vec3(0.9f, 0.8f, 0.7f);
     const std::string file = scratch.path() / "fog.vdb";
@@ -170,7 +170,7 @@ TEST(Bake, SaysHowItWasMade) {
 }
 
 TEST(Bake, ResumeKeepsWhatIsRight) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const FogRecipe recipe = small_fog();
     const std::string pattern = scratch.path() / "fog.####.vdb";
     const std::vector<int> frames{1, 2, 3, 4};
@@ -222,7 +222,7 @@ TEST(Bake, ResumeKeepsWhatIsRight) {
 
 TEST(Bake, ThreadsGiveTheSameFiles) {
     const auto files = [] {
-        const Scratch scratch;
+        const TempFolder scratch;
         baked(small_fog(), scratch.path() / "fog.####.vdb", {1, 2, 3, 4});
         BakeOptions options;
         options.velocity = true;
@@ -235,7 +235,7 @@ TEST(Bake, ThreadsGiveTheSameFiles) {
 }
 
 TEST(Bake, LoopsMeet) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const FogRecipe recipe = small_fog(); // four seconds at 24 frames per second
     baked(recipe, scratch.path() / "fog.####.vdb", {5, 101});
     const SparseVolume a = read_vdb(scratch.path() / "fog.0005.vdb"), b = read_vdb(scratch.path() / "fog.0101.vdb");
@@ -247,7 +247,7 @@ TEST(Bake, LoopsMeet) {
 }
 
 TEST(Bake, EmptyFogIsAFileToo) {
-    const Scratch scratch;
+    const TempFolder scratch;
     FogRecipe recipe = small_fog();
     recipe.threshold = 1;
     const std::string file = scratch.path() / "none.vdb";
@@ -259,7 +259,7 @@ TEST(Bake, EmptyFogIsAFileToo) {
 }
 
 TEST(Bake, RefusesWhatCannotBe) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto code_of = [&](const FogRecipe& recipe, const std::string& pattern, const std::vector<int>& frames) {
         return error_of([&] { baked(recipe, pattern, frames); }).code;
     };

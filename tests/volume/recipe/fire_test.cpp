@@ -163,12 +163,12 @@ TEST(Fire, GrowsEveryVoxelOfFlameAndSmoke) {
             EXPECT_TRUE(grown == expected) << seed;
             EXPECT_LT(volume.leaves.size() * 512, expected.size() * 3 / 4) << "hardly any empty leaf was tested";
         };
-        GrowReport report;
-        expect_all(grow(recipe, seconds, &report), density_at(recipe, seconds, points));
-        expect_all(grow_temperature(recipe, seconds), kelvin_at(recipe, seconds, points));
+        GenerateReport report;
+        expect_all(generate(recipe, seconds, &report), density_at(recipe, seconds, points));
+        expect_all(generate_temperature(recipe, seconds), kelvin_at(recipe, seconds, points));
         EXPECT_LE(report.kept, report.tried);
     }
-    EXPECT_TRUE(grow_temperature(full_fog(), 0).empty());
+    EXPECT_TRUE(generate_temperature(full_fog(), 0).empty());
 }
 
 TEST(Fire, WithoutOneNothingHasATemperature) {

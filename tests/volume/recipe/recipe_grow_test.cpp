@@ -30,11 +30,11 @@ struct Comparison {
     int64_t leaves = 0, full_leaves = 0, missing = 0, different = 0;
 };
 
-// Counts voxels with fog that grow() left out, and values that are not those of the recipe.
-Comparison compare_with_brute_force(const FogRecipe& recipe, double seconds, GrowReport* report = nullptr,
+// Counts voxels with fog that generate() left out, and values that are not those of the recipe.
+Comparison compare_with_brute_force(const FogRecipe& recipe, double seconds, GenerateReport* report = nullptr,
                                     float tolerance = 0) {
     const std::vector<float> expected = brute_force(recipe, seconds);
-    const SparseVolume volume = grow(recipe, seconds, report);
+    const SparseVolume volume = generate(recipe, seconds, report);
     const ivec3 size = voxels_of(recipe);
     std::vector<float> grown(expected.size(), 0.0f);
     Comparison result;
@@ -60,7 +60,7 @@ void expect_no_hole(int recipes, float across, uint32_t seed, int64_t min_leaves
     int64_t leaves = 0, full = 0;
     for (int i = 0; i < recipes; ++i) {
         const FogRecipe recipe = random_recipe(random, across);
-        GrowReport report;
+        GenerateReport report;
         const Comparison found = compare_with_brute_force(recipe, i * 0.37, &report);
         ASSERT_EQ(found.missing, 0) << "recipe " << i;
         ASSERT_EQ(found.different, 0) << "recipe " << i;
@@ -85,8 +85,8 @@ TEST(RecipeGrow, ComputesLittleForNothing) {
             recipe.bounds = {vec3(-4), vec3(4)};
             recipe.noise = {.octaves = 5, .scale = scale, .seed = 3};
             recipe.threshold = threshold;
-            GrowReport report;
-            grow(recipe, 0, &report);
+            GenerateReport report;
+            generate(recipe, 0, &report);
             EXPECT_GT(report.kept, report.leaves / 10);
             EXPECT_LT(report.wasted, report.finished / 10) << threshold << " at " << scale;
         }
@@ -94,8 +94,8 @@ TEST(RecipeGrow, ComputesLittleForNothing) {
     FogRecipe cloud;
     cloud.bounds = {vec3(-4), vec3(4)};
     cloud.noise.scale = 2, cloud.shape = FogShape::ellipsoid;
-    GrowReport report;
-    grow(cloud, 0, &report);
+    GenerateReport report;
+    generate(cloud, 0, &report);
     EXPECT_LT(report.tried, report.leaves * 7 / 10);
     EXPECT_LT(report.wasted, report.finished / 20);
 }
@@ -110,8 +110,8 @@ TEST(RecipeGrow, BusyFogEqualsItsDefinition) {
 }
 
 TEST(RecipeGrow, LeavesAreSortedWholeAndUseful) {
-    GrowReport report;
-    const SparseVolume volume = grow(busy_fog(), 1, &report);
+    GenerateReport report;
+    const SparseVolume volume = generate(busy_fog(), 1, &report);
     ASSERT_FALSE(volume.empty());
     ivec3 low(1 << 30), high(-1), before(-1);
     int64_t voxels = 0;
@@ -142,7 +142,7 @@ TEST(RecipeGrow, VoxelCentresLieHalfAVoxelInside) {
     recipe.bounds = {vec3(-1, 2, 5), vec3(1, 3, 5.5f)};
     recipe.voxel_size = 0.1;
     recipe.height_base = 2, recipe.height_falloff = 0.5f;
-    const SparseVolume volume = grow(recipe, 0);
+    const SparseVolume volume = generate(recipe, 0);
     EXPECT_EQ(volume.active_low, ivec3(0));
     EXPECT_EQ(volume.active_high, ivec3(19, 9, 4));
     const dvec3 first = dvec3(volume.index_to_world * glm::dvec4(0, 0, 0, 1));
@@ -159,7 +159,7 @@ TEST(RecipeGrow, VoxelCentresLieHalfAVoxelInside) {
 TEST(RecipeGrow, ThreadsAndInstructionSetsGiveTheSameBits) {
     const auto bytes = [] {
         std::string all;
-        for (const Leaf& leaf : grow(busy_fog(), 1.1).leaves)
+        for (const Leaf& leaf : generate(busy_fog(), 1.1).leaves)
             all.append(reinterpret_cast<const char*>(&leaf), sizeof leaf);
         return all;
     };
@@ -176,17 +176,17 @@ TEST(RecipeGrow, ThreadsAndInstructionSetsGiveTheSameBits) {
 TEST(RecipeGrow, FogThatIsThinnedToNothingIsEmpty) {
     FogRecipe recipe;
     recipe.threshold = 1;
-    const SparseVolume none = grow(recipe, 0);
+    const SparseVolume none = generate(recipe, 0);
     EXPECT_TRUE(none.empty());
     EXPECT_TRUE(none.leaves.empty());
     recipe = full_fog();
     recipe.height_base = -100, recipe.height_falloff = 1;
-    EXPECT_TRUE(grow(recipe, 0).leaves.empty());
+    EXPECT_TRUE(generate(recipe, 0).leaves.empty());
 }
 
 TEST(RecipeGrow, ImpossibleGridsAreRefusedAtOnce) {
     const auto code_of = [](const FogRecipe& recipe) {
-        const Error error = error_of([&] { grow(recipe, 0); });
+        const Error error = error_of([&] { generate(recipe, 0); });
         EXPECT_NE(std::string(error.what()).find("voxel_size"), std::string::npos) << error.what();
         return error.code;
     };

@@ -60,7 +60,7 @@ TEST(RecipeLoop, KeepsItsContrast) {
         std::vector<double> means, spreads;
         for (int i = 0; i < 16; ++i) {
             const std::vector<float> density = density_at(recipe, i / 4.0, points);
-            means.push_back(mean_of(density)), spreads.push_back(spread_of(density));
+            means.push_back(mean_of(density)), spreads.push_back(std_dev(density));
         }
         double mean = 0, spread = 0;
         for (size_t i = 0; i < spreads.size(); ++i) mean += means[i] / 16, spread += spreads[i] / 16;

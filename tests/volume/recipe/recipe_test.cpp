@@ -10,13 +10,13 @@
 namespace tyndall::testing {
 namespace {
 FogRecipe recipe_of(const std::string& json) {
-    const Scratch scratch;
+    const TempFolder scratch;
     return read_recipe(scratch.put("fog.json", json));
 }
 
 // The message with which a recipe is refused.
 std::string refusal(const std::string& json) {
-    return error_text(ExitCode::refused, [&] { recipe_of(json); });
+    return error_message(ExitCode::refused, [&] { recipe_of(json); });
 }
 
 const std::string shortest = R"({"bounds": {"low": [0, 0, 0], "high": [1, 2, 3]}, "voxel_size": 0.1)";
@@ -211,8 +211,8 @@ TEST(Recipe, ThoseThatComeWithTheProgramMakeFog) {
         SCOPED_TRACE(name);
         ++recipes;
         const FogRecipe recipe = read_recipe(entry.path());
-        GrowReport report;
-        const SparseVolume volume = grow(recipe, 0.5, &report);
+        GenerateReport report;
+        const SparseVolume volume = generate(recipe, 0.5, &report);
         EXPECT_GT(volume.leaves.size(), 100u);
         EXPECT_LT(report.leaves, 8000) << "takes long";
         EXPECT_LE(report.wasted, report.finished / 10);

@@ -76,7 +76,7 @@ AuthoredGrid one_leaf() {
 }
 
 Error refusal(const std::string& bytes) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto file = scratch.put("in.vdb", bytes);
     const Error info = error_of([&] { vdb_info(file); });
     const Error read = error_of([&] { read_vdb(file); });
@@ -241,7 +241,7 @@ TEST(Prewalk, DelayedLoadMetadataIsNotBelieved) {
     ASSERT_NE(name, std::string::npos);
     const size_t size = name + 13;
     ASSERT_GT(value_of<uint32_t>(good, size), 8u);
-    const Scratch scratch;
+    const TempFolder scratch;
     const SparseVolume plain = read_vdb(scratch.put("a.vdb", good));
     const SparseVolume volume = read_vdb(scratch.put("b.vdb", patched(patched(good, size + 4, ~0u), size + 8, ~0u)));
     EXPECT_EQ(value_at(volume, ivec3(3)), value_at(plain, ivec3(3)));
@@ -291,7 +291,7 @@ TEST_P(Cut, IsAlwaysRefused) {
     AuthoredGrid ball = noisy_ball({3, 0, 4094}, 9), second = noisy_ball(ivec3(0), 5);
     ball.half = second.half = half, second.name = "heat";
     const std::string good = authored({ball, second}, packing, offsets);
-    const Scratch scratch;
+    const TempFolder scratch;
     EXPECT_NO_THROW(read_vdb(scratch.put("good.vdb", good)));
     std::vector<size_t> lengths = {good.size() - 1, good.size() - 2, 0, 1, 8, 20, 57, 60};
     for (size_t i = 1; i < 60; ++i) lengths.push_back(good.size() * i / 60 + i % 7);

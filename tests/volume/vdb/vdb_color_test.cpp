@@ -20,12 +20,12 @@ AuthoredGrid grid_of(const std::string& name, const std::string& type,
 
 ColorVolume color_of(const std::string& bytes, const std::vector<std::string>& names, VdbReadReport* report = nullptr,
                      float most = infinity) {
-    const Scratch scratch;
+    const TempFolder scratch;
     return read_color_vdb(scratch.put("in.vdb", bytes), names, ValueMap(), most, report);
 }
 
 std::string refused(const std::string& bytes, const std::vector<std::string>& names) {
-    return error_text(ExitCode::refused, [&] { color_of(bytes, names); });
+    return error_message(ExitCode::refused, [&] { color_of(bytes, names); });
 }
 
 class ReadVectors : public ::testing::TestWithParam<std::tuple<const char*, bool, uint32_t>> {};
@@ -42,9 +42,9 @@ TEST_P(ReadVectors, EveryComponent) {
     for (const auto& [at, value] : grid.colors) {
         for (int c = 0; c < 3; ++c)
             ASSERT_NEAR(value_at(color.channels[static_cast<size_t>(c)], at), value[c], value[c] / 2000);
-        ASSERT_EQ(value_at(color.there, at), 1);
+        ASSERT_EQ(value_at(color.coverage, at), 1);
     }
-    EXPECT_EQ(value_at(color.there, {6, 0, 1}), 0);
+    EXPECT_EQ(value_at(color.coverage, {6, 0, 1}), 0);
 }
 INSTANTIATE_TEST_SUITE_P(All, ReadVectors,
                          ::testing::Combine(::testing::Values("vec3s", "vec3d"), ::testing::Bool(),
@@ -62,7 +62,7 @@ TEST(VdbColor, BackgroundIsNoColorAndValuesAreMended) {
     EXPECT_EQ(value_at(color.channels[1], {1, 2, 3}), 0.25f);
     EXPECT_EQ(value_at(color.channels[2], {1, 2, 3}), 1);
     EXPECT_EQ(value_at(color.channels[0], {1, 2, 5}), 0);
-    EXPECT_EQ(value_at(color.there, {1, 2, 5}), 0);
+    EXPECT_EQ(value_at(color.coverage, {1, 2, 5}), 0);
     EXPECT_THAT(report.summary(), HasSubstr("1 negative voxels set to 0"));
     EXPECT_THAT(report.summary(), HasSubstr("1 voxels above 1 clamped to it"));
 }
@@ -85,7 +85,7 @@ TEST(VdbColor, ThreeGridsOfNumbersAreOneColor) {
 }
 
 TEST(VdbMap, ValuesAreMappedBeforeTheyAreCleaned) {
-    const Scratch scratch;
+    const TempFolder scratch;
     AuthoredGrid grid = grid_of("temperature", "float",
                                 {{{0, 0, 0}, -1.0f}, {{0, 0, 1}, 2.0f}, {{0, 0, 2}, std::nanf("")}, {{0, 0, 3}, 1e9f}});
     ValueMap map;
@@ -115,7 +115,7 @@ AuthoredGrid level_set() {
 }
 
 TEST(VdbLevelSet, BecomesFogOfAWidthWithinItsNarrowBand) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto file = scratch.put("in.vdb", authored({level_set()}));
     ValueMap map;
     map.width = 2;
@@ -130,18 +130,18 @@ TEST(VdbLevelSet, BecomesFogOfAWidthWithinItsNarrowBand) {
     EXPECT_EQ(value_at(fog, {8, 8, 8}), 0);
 
     map.width = 3.5f;
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_vdb(file, "surface", map, infinity, nullptr); }),
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { read_vdb(file, "surface", map, infinity, nullptr); }),
                 HasSubstr("its narrow band has a half width of 3, in the file's units; a \"width\" of 3.5 exceeds it"));
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_vdb(file, "surface"); }), HasSubstr("\"width\""));
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { read_vdb(file, "surface"); }), HasSubstr("\"width\""));
     AuthoredGrid fog_volume = grid_of("density", "float", {{{0, 0, 0}, 1.0f}});
     fog_volume.grid_class = "fog volume";
     const auto other = scratch.put("fog.vdb", authored({fog_volume}));
-    EXPECT_THAT(error_text(ExitCode::refused, [&] { read_vdb(other, "density", map, infinity, nullptr); }),
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { read_vdb(other, "density", map, infinity, nullptr); }),
                 HasSubstr("a \"width\" is for level sets"));
 }
 
 TEST(VdbRoles, GridsLookLikeWhatTheyAreCalled) {
-    const Scratch scratch;
+    const TempFolder scratch;
     AuthoredGrid surface = level_set();
     const auto file = scratch.put(
         "in.vdb", authored({grid_of("density", "float"), grid_of("Temperature", "float"), grid_of("flame", "float"),

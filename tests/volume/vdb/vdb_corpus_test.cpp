@@ -59,7 +59,7 @@ TEST(VdbCorpus, EveryFileReadsOrIsRefusedInOneLine) {
 }
 
 TEST(VdbCorpus, CutFilesAreRefused) {
-    const Scratch scratch;
+    const TempFolder scratch;
     for (const fs::path& file : test::corpus_files_named(
              {"vdb/vpt/dragon.vdb", "vdb/oiio/sphere.vdb", "vdb/helium/smoke.vdb", "vdb/openusd/densityAndHeat.vdb"})) {
         const std::string good = bytes_of(file);
@@ -183,7 +183,7 @@ TEST(VdbCorpus, EmptyFrameOfASequence) {
     for (AuthoredGrid& grid : grids) grid.index_to_world = glm::scale(dmat4(1), dvec3(0.1326, 0.1329, 0.1317));
     AuthoredGrid smoke = noisy_ball(ivec3(20), 6);
     smoke.index_to_world = grids[0].index_to_world;
-    const Scratch scratch;
+    const TempFolder scratch;
     expect_smoke_from_nothing(scratch.put("1.vdb", authored(grids)), scratch.put("2.vdb", authored({smoke})));
     for (const fs::path& file : test::corpus_files("vdb"))
         if (file.filename() == "smoke_000001.vdb")
@@ -206,7 +206,7 @@ TEST(VdbCorpus, FogBesideADistanceField) {
 TEST(VdbCorpus, ActiveVoxelsOfNothing) {
     AuthoredGrid nothing;
     nothing.voxels = {{ivec3(0), 0.0f}, {ivec3(9), 0.0f}};
-    const Scratch scratch;
+    const TempFolder scratch;
     const Read back = read(scratch.put("nothing.vdb", authored({nothing})));
     EXPECT_FALSE(back.volume.empty());
     EXPECT_EQ(back.sum, 0);
@@ -221,7 +221,7 @@ TEST(VdbCorpus, WhatIsNoVolume) {
 
 // What was read, written and read again is the same fog.
 TEST(VdbCorpus, RoundTrip) {
-    const Scratch scratch;
+    const TempFolder scratch;
     for (const fs::path& file : test::corpus_files_named(
              {"vdb/vpt/dragon_with_xform.vdb", "vdb/vpt/box.vdb", "vdb/openusd/smoke_000003.vdb"})) {
         const Read once = read(file);

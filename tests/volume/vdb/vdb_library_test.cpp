@@ -61,7 +61,7 @@ std::pair<std::string, std::map<std::string, std::string>> tree_of(const std::fi
 }
 
 TEST(VdbLibrary, WritesTheSameBytes) {
-    const Scratch scratch;
+    const TempFolder scratch;
     SparseVolume volume = many_leaves(0.0007f);
     for (Leaf& leaf : volume.leaves)
         if (leaf.values[7] > 0) leaf.values[7] = 3.3e-7f; // a subnormal half
@@ -94,7 +94,7 @@ std::vector<std::string> trees_of(const std::filesystem::path& path) {
 
 TEST(VdbLibrary, WritesTheSameVectors) {
     // Numbers, and vectors of both signs on their voxels, some of them nought.
-    const Scratch scratch;
+    const TempFolder scratch;
     const SparseVolume volume = many_leaves(0x1p-10f);
     const auto vector_of = [](float value) { return vec3(value - 0.75f, value < 1 ? 0 : -2 * value, 0.5f * value); };
     VdbContent content{{{"density"}, {"vel", true}}, dmat4(1), {}, {}, {}, {}};
@@ -128,7 +128,7 @@ TEST(VdbLibrary, WritesTheSameVectors) {
 }
 
 TEST(VdbLibrary, ReadsWhatTheLibraryWrote) {
-    const Scratch scratch;
+    const TempFolder scratch;
     for (const std::string type : {"float", "double"})
         for (const uint32_t packing : {pack_none, pack_mask, pack_zip, pack_mask | pack_blosc}) {
             AuthoredGrid grid = same_for_library(many_leaves(0x1p-10f), packing == pack_mask);
@@ -155,7 +155,7 @@ TEST(VdbLibrary, ReadsWhatTheLibraryWrote) {
 }
 
 TEST(VdbLibrary, LeavesThatShareAnOriginAreAnError) {
-    const Scratch scratch;
+    const TempFolder scratch;
     SparseVolume volume;
     volume.leaves.resize(2);
     for (Leaf& leaf : volume.leaves) leaf.values[3] = 1;

@@ -108,7 +108,7 @@ std::vector<std::string> originals() {
 
 void mutate(int count, uint32_t seed) {
     const Threads alone(1); // a child of a process whose workers are about may wait for them forever
-    const Scratch scratch;
+    const TempFolder scratch;
     const std::vector<std::string> files = originals();
     std::mt19937 random(seed);
     int outcomes[3] = {};

@@ -22,7 +22,7 @@ struct Read {
 };
 
 Read read(const std::string& bytes, const std::string& grid = "") {
-    const Scratch scratch;
+    const TempFolder scratch;
     Read result;
     result.volume = read_vdb(scratch.put("in.vdb", bytes), grid, &result.report);
     return result;
@@ -104,7 +104,7 @@ TEST(VdbRead, TilesOfEveryLevel) {
     EXPECT_EQ(back.volume.active_low, ivec3(0));
     EXPECT_EQ(back.volume.active_high, ivec3(8191));
 
-    const Scratch scratch;
+    const TempFolder scratch;
     const VdbGridInfo info = vdb_info(scratch.put("in.vdb", authored({grid}))).grids.at(0);
     EXPECT_EQ(info.tiles, 3u);
     EXPECT_EQ(info.active_voxels, (1ull << 9) + (1ull << 21) + (1ull << 36));
@@ -175,7 +175,7 @@ TEST(VdbRead, WrongValuesAreMendedAndCounted) {
     EXPECT_EQ(value_at(back.volume, ivec3(0)), 0.5f);
     EXPECT_TRUE(back.volume.tiles.empty());
 
-    const Scratch scratch;
+    const TempFolder scratch;
     const VdbGridInfo info = vdb_info(scratch.put("in.vdb", authored({grid}))).grids.at(0);
     EXPECT_EQ(info.non_finite, 515u);
     EXPECT_EQ(info.negative, 513u);
@@ -225,7 +225,7 @@ TEST(VdbRead, NameAndIndex) {
     EXPECT_EQ(chosen("heat"), 2);
     EXPECT_EQ(chosen("odd[1]"), 4);
     EXPECT_EQ(chosen(""), 1);
-    const Scratch scratch;
+    const TempFolder scratch;
     const VdbInfo info = vdb_info(scratch.put("all.vdb", bytes));
     for (size_t i = 0; i < grids.size(); ++i) EXPECT_EQ(chosen(info.grids[i].key), static_cast<float>(i + 1));
     for (const char* wrong : {"smoke", "density[2]", "density[-1]", "density[]", "density[1x]", "heat]"}) {
@@ -287,7 +287,7 @@ TEST(VdbRead, OtherGridsAreNotInTheWay) {
         for (const uint32_t packing : {pack_none, pack_mask | pack_zip, pack_mask | pack_blosc}) {
             const std::string bytes = authored(grids, packing, offsets);
             EXPECT_EQ(read(bytes).volume.active_high, ivec3(5));
-            const Scratch scratch;
+            const TempFolder scratch;
             for (const VdbGridInfo& info : vdb_info(scratch.put("in.vdb", bytes)).grids)
                 EXPECT_EQ(info.active_voxels,
                           info.name == "density" ? grids.back().voxels.size() : grids[0].voxels.size());
@@ -297,7 +297,7 @@ TEST(VdbRead, OtherGridsAreNotInTheWay) {
 TEST(VdbInfo, TellsWhatIsThere) {
     AuthoredGrid grid = noisy_ball(ivec3(0), 5);
     grid.index_to_world = glm::scale(dmat4(1), dvec3(0.1, 0.2, 0.3));
-    const Scratch scratch;
+    const TempFolder scratch;
     const VdbInfo info = vdb_info(scratch.put("in.vdb", authored({grid, small("v", "vec3s")})));
     EXPECT_EQ(info.file_version, 224u);
     EXPECT_EQ(info.library_version, "10.0");
@@ -317,7 +317,7 @@ TEST(VdbInfo, TellsWhatIsThere) {
 
 // Replaced by a rename or cut in place while it is read: the old fog, the new one or an Error.
 TEST(VdbRead, FileThatChangesUnderneath) {
-    const Scratch scratch;
+    const TempFolder scratch;
     AuthoredGrid ball = noisy_ball(ivec3(0), 12);
     const std::string old = authored({ball});
     ball.voxels[0].second = 2;
@@ -350,7 +350,7 @@ TEST(VdbRead, MoreThanTheMemoryThereIs) {
 #ifdef __SANITIZE_ADDRESS__
     GTEST_SKIP() << "the sanitizer takes more address space than there is memory";
 #endif
-    const Scratch scratch;
+    const TempFolder scratch;
     SparseVolume volume;
     volume.leaves.resize(40000); // 90 MB
     for (int i = 0; i < 40000; ++i) {
@@ -371,7 +371,7 @@ TEST(VdbRead, MoreThanTheMemoryThereIs) {
 }
 
 TEST(VdbRead, WhatIsNoVolume) {
-    const Scratch scratch;
+    const TempFolder scratch;
     EXPECT_EQ(error_of([&] { read_vdb(scratch.path() / "missing.vdb"); }).code, ExitCode::unreadable);
     EXPECT_EQ(error_of([&] { read_vdb(scratch.path()); }).code, ExitCode::unreadable);
     EXPECT_EQ(error_of([&] { read_vdb("/dev/zero"); }).code, ExitCode::unreadable);

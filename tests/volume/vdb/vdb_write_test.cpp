@@ -49,7 +49,7 @@ struct Encoding {
 class WriteEncodings : public ::testing::TestWithParam<Encoding> {};
 
 TEST_P(WriteEncodings, ReadBackTheSame) {
-    const Scratch scratch;
+    const TempFolder scratch;
     const SparseVolume volume = example();
     write_vdb(scratch.path() / "a.vdb", volume, {.half = GetParam().half, .blosc = GetParam().blosc});
     VdbReadReport report;
@@ -71,7 +71,7 @@ TEST_P(WriteEncodings, ReadBackTheSame) {
 }
 
 TEST_P(WriteEncodings, SameInputSameBytes) {
-    const Scratch scratch;
+    const TempFolder scratch;
     SparseVolume volume = example();
     const VdbWriteOptions options{.half = GetParam().half, .blosc = GetParam().blosc};
     write_vdb(scratch.path() / "a.vdb", volume, options);
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(All, WriteEncodings,
                                            Encoding{false, false}));
 
 TEST(VdbWrite, ShearedTransformSurvives) {
-    const Scratch scratch;
+    const TempFolder scratch;
     dmat4 matrix(0.5);
     matrix[1][0] = 0.125, matrix[2][1] = -0.25, matrix[3] = glm::dvec4(1, 2, 3, 1);
     write_vdb(scratch.path() / "a.vdb", example(matrix));
@@ -99,7 +99,7 @@ TEST(VdbWrite, ShearedTransformSurvives) {
 }
 
 TEST(VdbWrite, MetadataSurvives) {
-    const Scratch scratch;
+    const TempFolder scratch;
     write_vdb(scratch.path() / "a.vdb", example(), {.creator = "someone"});
     const std::vector<std::pair<std::string, std::string>> expected = {{"creator", "someone"},
                                                                        {"note", "1"},
@@ -111,7 +111,7 @@ TEST(VdbWrite, MetadataSurvives) {
 }
 
 TEST(VdbWrite, ValuesThatDoNotFitAreClamped) {
-    const Scratch scratch;
+    const TempFolder scratch;
     SparseVolume volume;
     volume.leaves.resize(1);
     volume.leaves[0].values = {65520, infinity, -1, std::nanf(""), 1e-8f, 0.1f};
@@ -128,7 +128,7 @@ TEST(VdbWrite, ValuesThatDoNotFitAreClamped) {
 }
 
 TEST(VdbWrite, EmptyVolume) {
-    const Scratch scratch;
+    const TempFolder scratch;
     SparseVolume volume;
     volume.leaves.resize(2);
     volume.leaves[1].origin = ivec3(8);
@@ -140,7 +140,7 @@ TEST(VdbWrite, EmptyVolume) {
 
 // A file size limit fails a write as a full disk does, in the middle and not at open.
 TEST(VdbWrite, FailedWriteLeavesNothing) {
-    const Scratch scratch;
+    const TempFolder scratch;
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
     std::signal(SIGXFSZ, SIG_IGN);
@@ -154,7 +154,7 @@ TEST(VdbWrite, FailedWriteLeavesNothing) {
 }
 
 TEST(VdbWrite, FullDiskLeavesTheOldFile) {
-    const Scratch scratch;
+    const TempFolder scratch;
     if (mount("tmpfs", scratch.path().c_str(), "tmpfs", 0, "size=128k") != 0)
         GTEST_SKIP() << "cannot mount a small disk";
     SparseVolume large = example();

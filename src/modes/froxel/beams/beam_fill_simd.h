@@ -35,7 +35,7 @@ void prepare_beams(const Fill& fill, const Lanes& where, PacketBeams& beams) {
     beams.sums.resize(count + kept.media);
     for (size_t b = 0; b < count; ++b)
         for (size_t i = 0; i < 16; ++i) {
-            if (!where.there[i]) continue;
+            if (!where.in_grid[i]) continue;
             const FroxelBeams::Reach& reach = beams.reaches[16 * b + i] = kept.reach(where.tile[i], b);
             if (reach.end == 0) continue;
             beams.all[b] = {std::min(beams.all[b].first, reach.first), std::max(beams.all[b].end, reach.end)};
@@ -67,7 +67,7 @@ Vec3s turned_inside(const Light& light, const Vec3s& point) {
     const Vec3s across = offset - axis * along;
     const Floats wide = sqrt(dot(across, across));
     const Mask16 outside = wide * cosine > along * sine;
-    const Vec3s turned = fused(axis, distance * cosine, across * (distance * sine / max(wide, 1e-20f)));
+    const Vec3s turned = fma(axis, distance * cosine, across * (distance * sine / max(wide, 1e-20f)));
     const Vec3s inside{select(outside, turned.x, offset.x), select(outside, turned.y, offset.y),
                        select(outside, turned.z, offset.z)};
     return inside + splat(light.position);
@@ -75,8 +75,8 @@ Vec3s turned_inside(const Light& light, const Vec3s& point) {
 
 // Fraction of a beam that surfaces let through to the lanes: the lit fraction of the segments inside the beam or, for
 // lanes beside it, the visibility of a point inside it.
-Floats seen_share(const Fill& fill, const PacketBeams& beams, size_t beam, const FroxelLanes& lanes, const Vec3s& point,
-                  const Job& job) {
+Floats beam_visibility(const Fill& fill, const PacketBeams& beams, size_t beam, const FroxelLanes& lanes,
+                       const Vec3s& point, const Job& job) {
     const FroxelBeams& kept = *fill.pass.beams;
     const size_t index = kept.lights[beam];
     const Light& light = fill.scene.snapshot.lights[index];
@@ -110,7 +110,7 @@ void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, c
         const Light& light = fill.scene.snapshot.lights[index];
         const Vec3s point = has_cone(light) ? turned_inside(light, lanes.point) : lanes.point;
         Floats share = fill.scene.has_pixel_views(index) ? alpha_share(fill, index, lanes, job, lanes.active)
-                                                         : seen_share(fill, beams, b, lanes, point, job);
+                                                         : beam_visibility(fill, beams, b, lanes, point, job);
         const Mask16 some = lanes.active & (share > 0.0f);
         if (!any(some)) continue;
         if (fill.scene.columns[index]) fill_around(*fill.scene.columns[index], point, some);
@@ -123,7 +123,7 @@ void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, c
     const Floats inverse = zero_unless(here > 0.0f, 1.0f / max(here, 1e-30f));
     for (size_t m = 0; m < kept.media; ++m) {
         float* sum = beams.sums[kept.lights.size() + m].data();
-        store(fused(load(job.extinction[m]), inverse, load(sum)), sum);
+        store(fma(load(job.extinction[m]), inverse, load(sum)), sum);
     }
 }
 
@@ -133,7 +133,7 @@ void put_beams(const Fill& fill, const Lanes& where, const PacketBeams& beams, i
     const size_t count = kept.lights.size();
     const float share = 1 / static_cast<float>(fill.samples());
     for (size_t i = 0; i < 16; ++i) {
-        if (!where.there[i]) continue;
+        if (!where.in_grid[i]) continue;
         const bool hidden = is_hidden(fill.grid, fill.tiles, where.tile[i], slice);
         const auto put = [&](float& value, bool first, float sum) {
             value = !hidden ? sum * share : first ? 0 : (&value)[-1];
@@ -141,11 +141,11 @@ void put_beams(const Fill& fill, const Lanes& where, const PacketBeams& beams, i
         for (size_t b = 0; b < count; ++b) {
             const FroxelBeams::Reach& reach = beams.reaches[16 * b + i];
             if (slice < reach.first || slice >= reach.end) continue;
-            const size_t place = reach.place + static_cast<size_t>(slice - reach.first);
-            put(kept.shares[place], slice == reach.first, beams.sums[b][i]);
+            const size_t index = reach.index + static_cast<size_t>(slice - reach.first);
+            put(kept.shares[index], slice == reach.first, beams.sums[b][i]);
         }
         for (size_t m = 0; m < kept.media; ++m)
-            put(kept.media_shares[kept.media_place(fill.grid, where.tile[i], m, slice)], slice == 0,
+            put(kept.media_shares[kept.media_index(fill.grid, where.tile[i], m, slice)], slice == 0,
                 beams.sums[count + m][i]);
     }
 }

@@ -53,7 +53,7 @@ HWY_INLINE Interval<Floats> inside_ball(float radius, const RaysByLamp& rays) {
 HWY_INLINE Interval<Floats> inside_cone(float half_angle, const RaysByLamp& rays) {
     constexpr float right = 0.5f * pi, far = 1e30f;
     const float edge = std::max(std::cos(half_angle), 1e-6f);
-    const Floats c2 = fused(rays.along, rays.along, rays.by * rays.by);
+    const Floats c2 = fma(rays.along, rays.along, rays.by * rays.by);
     const Mask16 met = c2 > edge * edge;
     const Floats half = atan(sqrt(max(c2 - edge * edge, 0.0f)) * (1 / edge));
     const Floats slope = rays.along / select(abs(rays.by) < 1e-20f, 1e-20f, rays.by);
@@ -68,12 +68,12 @@ HWY_INLINE Interval<Floats> inside_cone(float half_angle, const RaysByLamp& rays
     return {select(ahead, length(from), far), select(ahead, length(to), -far)};
 }
 
-// Factor on the light's intensity at u, without shadows, as arriving() of trace/lights/light_simd.h.
+// Factor on the light's intensity at u, without shadows, as arrival16() of trace/lights/light_simd.h.
 HWY_INLINE Floats strength_at(const Light& light, const ConeFalloff& cone, const RaysByLamp& rays, const Floats& u,
                               const Floats& distance) {
     const float reach = capped_radius(light);
-    const Floats cosine = min(fused(u, rays.along, rays.by * sqrt(rays.height2)) / max(distance, 1e-20f), 1.0f);
-    const Floats edge = max(min(fused(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
+    const Floats cosine = min(fma(u, rays.along, rays.by * sqrt(rays.height2)) / max(distance, 1e-20f), 1.0f);
+    const Floats edge = max(min(fma(cosine, cone.scale, cone.offset), 1.0f), 0.0f);
     Floats amount = (has_cone(light) ? edge * edge : Floats(1.0f)) / max(distance * distance, reach * reach);
     if (!std::isinf(light.range)) {
         const Floats share = distance * (1 / light.range), fourth = (share * share) * (share * share);
@@ -89,26 +89,26 @@ struct BeamRays {
     Ints own;           // tiles that contain them
 };
 
-HWY_INLINE BeamRays beam_rays(const FroxelPicture& picture, const RayBatch& batch, const Places& places) {
+HWY_INLINE BeamRays beam_rays(const FroxelBuffer& froxels, const RayBatch& batch, const FroxelTaps& taps) {
     alignas(64) float origin[3][16], direction[3][16];
     for (size_t i = 0; i < 16; ++i) {
         const Ray& ray = batch.rays[std::min(i, batch.rays.size() - 1)];
         for (int c = 0; c < 3; ++c) origin[c][i] = ray.origin[c], direction[c][i] = ray.direction[c];
     }
-    const FroxelGrid& grid = picture.grid;
+    const FroxelGrid& grid = froxels.grid;
     BeamRays rays;
     rays.origin = {load(origin[0]), load(origin[1]), load(origin[2])};
     rays.direction = {load(direction[0]), load(direction[1]), load(direction[2])};
-    rays.first = max(Floats(grid.faces.front()) - places.start, 0.0f) * places.slant;
-    rays.last = (min(places.end, grid.faces.back()) - places.start) * places.slant;
-    rays.own = places.own;
+    rays.first = max(Floats(grid.faces.front()) - taps.start, 0.0f) * taps.slant;
+    rays.last = (min(taps.end, grid.faces.back()) - taps.start) * taps.slant;
+    rays.own = taps.own;
     return rays;
 }
 
 // Integration of one beam along the rays.
 struct BeamWalk {
-    const FroxelPicture& picture;
-    const Places& places;
+    const FroxelBuffer& froxels;
+    const FroxelTaps& taps;
     const BeamRays& rays;
     size_t beam;
     const Light& light;
@@ -164,7 +164,7 @@ HWY_INLINE Vec3s between_kinks(const BeamWalk& walk, const Interval<Floats>& par
 template<class Add>
 HWY_INLINE Vec3s between_cuts(const BeamWalk& walk, const Interval<Floats>& part, const Mask16& wanted,
                               const Add& add) {
-    const LobeCuts& cuts = walk.picture.beams.lobe;
+    const LobeCuts& cuts = walk.froxels.beams.lobe;
     if (cuts.count == 0) return add(part, wanted);
     Vec3s sum = splat(vec3(0));
     Floats low = part.low;
@@ -182,8 +182,8 @@ HWY_INLINE Vec3s between_cuts(const BeamWalk& walk, const Interval<Floats>& part
 HWY_INLINE Floats closed_depth_to_lamp(const BeamWalk& walk, const Vec3s& point, const Floats& distance) {
     Floats sum = 0.0f;
     const Vec3s towards = splat(walk.light.position) - point;
-    const LightPaths paths{point, towards * (1.0f / max(distance, 1e-12f)), max(distance - walk.light.radius, 0.0f)};
-    for (const Medium& medium : walk.picture.scene->depths[walk.picture.beams.lights[walk.beam]].analytic)
+    const Segments16 paths{point, towards * (1.0f / max(distance, 1e-12f)), max(distance - walk.light.radius, 0.0f)};
+    for (const Medium& medium : walk.froxels.scene->depths[walk.froxels.beams.lights[walk.beam]].analytic)
         sum = sum + analytic_depth16(medium, paths);
     return sum;
 }
@@ -191,8 +191,8 @@ HWY_INLINE Floats closed_depth_to_lamp(const BeamWalk& walk, const Vec3s& point,
 // Optical depth of such fog from the rays' starts to u.
 HWY_INLINE Floats closed_depth_before(const BeamWalk& walk, const Floats& u) {
     Floats sum = 0.0f;
-    const LightPaths paths{walk.rays.origin, walk.rays.direction, max(u + walk.by_lamp.nearest, 0.0f)};
-    for (const Medium& medium : walk.picture.scene->snapshot.media) sum = sum + analytic_depth16(medium, paths);
+    const Segments16 paths{walk.rays.origin, walk.rays.direction, max(u + walk.by_lamp.nearest, 0.0f)};
+    for (const Medium& medium : walk.froxels.scene->snapshot.media) sum = sum + analytic_depth16(medium, paths);
     return sum;
 }
 

@@ -20,16 +20,16 @@ void find_reaches(const FroxelGrid& grid, const Light& light, float radius, floa
     alignas(64) float x[16], inside[16];
     for (int i = 0; i < 16; ++i) x[i] = grid.pixel_of(vec2(first + ivec2(i, 0))).x, reaches[i] = {};
     const float y = grid.pixel_of(vec2(first)).y;
-    const Vec3s step = fused(splat(grid.step_x), load(x), splat(grid.step + y * grid.step_y));
-    const Vec3s start = fused(splat(grid.origin_x), load(x), splat(grid.origin + y * grid.origin_y - light.position));
+    const Vec3s step = fma(splat(grid.step_x), load(x), splat(grid.step + y * grid.step_y));
+    const Vec3s start = fma(splat(grid.origin_x), load(x), splat(grid.origin + y * grid.origin_y - light.position));
     const Floats slant = sqrt(dot(step, step));
     const float cosine = std::cos(light.outer_cone), sine = std::sin(light.outer_cone);
     for (int k = 0; k < grid.slices(); ++k) {
         const float low = grid.faces[static_cast<size_t>(k)], high = grid.faces[static_cast<size_t>(k) + 1];
         const float width = froxel_width(grid, high);
         // Tested from the midpoint of the froxel's line: no point of the line is farther away than half its length.
-        const Vec3s offset = fused(step, 0.5f * (low + high), start);
-        const Floats near = fused(slant, 0.5f * (high - low), margin * width);
+        const Vec3s offset = fma(step, 0.5f * (low + high), start);
+        const Floats near = fma(slant, 0.5f * (high - low), margin * width);
         const Floats squared = dot(offset, offset), along = dot(offset, splat(light.direction));
         const Floats across = sqrt(max(squared - along * along, 0.0f));
         Mask16 reached = sqrt(squared) <= near + std::min(light.range, radius);
@@ -126,10 +126,10 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
     }
     beams.reaches.resize(grid.tiles() * beams.lights.size());
     HWY_DYNAMIC_DISPATCH(reaches_kernel)(scene, grid, beams);
-    size_t place = 0;
+    size_t index = 0;
     for (FroxelBeams::Reach& reach : beams.reaches)
-        reach.place = std::exchange(place, place + static_cast<size_t>(reach.end - reach.first));
-    beams.shares.resize(place);
+        reach.index = std::exchange(index, index + static_cast<size_t>(reach.end - reach.first));
+    beams.shares.resize(index);
     const size_t media = scene.snapshot.media.size();
     beams.media = media > 1 && !is_closed(scene) ? media : 0;
     beams.media_shares.resize(grid.tiles() * beams.media * static_cast<size_t>(grid.slices()));

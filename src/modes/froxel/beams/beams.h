@@ -28,7 +28,7 @@ NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t li
 
 // A light with an IES profile or gobo is split into this many angles along a ray, with two points each.
 inline constexpr float filter_pieces = 48;
-inline float filter_point_angle(const Light& light) { return whole_angle(light) / (2 * filter_pieces); }
+inline float filter_point_angle(const Light& light) { return cone_angle(light) / (2 * filter_pieces); }
 
 // The near part of a lamp by the size of the froxels around it: beyond half its radius, froxels resolve 1/r² and the
 // fog around the lamp. 0 for a lamp behind the camera.
@@ -41,7 +41,7 @@ struct FroxelBeams {
     // Slices of a tile that the light may reach, in the tile or its neighbors.
     struct Reach {
         int32_t first = 0, end = 0;
-        size_t place = 0; // index of the first slice's share
+        size_t index = 0; // index of the first slice's share
     };
     // Attenuation by the grid fog within a few froxels of a lamp, in closed form: interpolated shares would blur its
     // onset.
@@ -62,9 +62,9 @@ struct FroxelBeams {
     const Reach& reach(size_t tile, size_t beam) const { return reaches[tile * lights.size() + beam]; }
     float share(size_t tile, size_t beam, int slice) const {
         const Reach& of = reach(tile, beam);
-        return slice < of.first || slice >= of.end ? 0 : shares[of.place + static_cast<size_t>(slice - of.first)];
+        return slice < of.first || slice >= of.end ? 0 : shares[of.index + static_cast<size_t>(slice - of.first)];
     }
-    size_t media_place(const FroxelGrid& grid, size_t tile, size_t medium, int slice) const {
+    size_t media_index(const FroxelGrid& grid, size_t tile, size_t medium, int slice) const {
         return (tile * media + medium) * static_cast<size_t>(grid.slices()) + static_cast<size_t>(slice);
     }
 };

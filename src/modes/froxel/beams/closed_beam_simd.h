@@ -20,15 +20,15 @@ namespace {
 Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch, const Mask16& wanted) {
     constexpr float gauss = 0.2113248654f; // (1 - 1/√3) / 2
     const float most = walk.light.filter ? 2 * filter_pieces : 24;
-    const FroxelScene& scene = *walk.picture.scene;
-    const size_t index = walk.picture.beams.lights[walk.beam];
+    const FroxelScene& scene = *walk.froxels.scene;
+    const size_t index = walk.froxels.beams.lights[walk.beam];
     const EquiAngular16 angles(stretch, walk.by_lamp.away);
     const Floats across = closed_depth_before(walk, stretch.high) - closed_depth_before(walk, stretch.low);
     // A spot's soft edge may be narrow, and so may a phase lobe.
-    const bool sharp = has_cone(walk.light) || walk.picture.beams.lobe.count > 0;
+    const bool sharp = has_cone(walk.light) || walk.froxels.beams.lobe.count > 0;
     float wide = sharp ? 0.2f : 0.3f;
     const float least = sharp ? 2 : 1;
-    if (walk.light.filter) wide = std::min(wide, whole_angle(walk.light) / filter_pieces);
+    if (walk.light.filter) wide = std::min(wide, cone_angle(walk.light) / filter_pieces);
     const Floats pieces = min(floor(max(angles.angle * (1 / wide), across)) + least, most);
     const Mask16 single = (angles.angle < (sharp ? 0.0f : 0.05f)) & (across < 0.1f);
     const Floats points = select(single, 1.0f, pieces * 2.0f), weight = 1.0f / points;
@@ -38,19 +38,19 @@ Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch,
         if (!any(here)) break;
         const float piece = static_cast<float>(i / 2) + (i % 2 ? 1 - gauss : gauss);
         const Floats slope = angles.slope(select(single, 0.5f, piece / pieces)), u = slope * angles.height;
-        const Floats distance = sqrt(fused(u, u, walk.by_lamp.height2));
-        const Vec3s point = fused(walk.rays.direction, u + walk.by_lamp.nearest, walk.rays.origin);
+        const Floats distance = sqrt(fma(u, u, walk.by_lamp.height2));
+        const Vec3s point = fma(walk.rays.direction, u + walk.by_lamp.nearest, walk.rays.origin);
         const Floats dimmed =
-            closed_depth_before(walk, u) * walk.picture.view_depth + light_depth16(scene.depths[index], point, here);
+            closed_depth_before(walk, u) * walk.froxels.view_depth + light_depth16(scene.depths[index], point, here);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
                               angles.length(weight, slope) * exp(-dimmed) *
-                              style_fade(scene.style, walk.picture.grid.camera, point);
+                              style_fade(scene.style, walk.froxels.grid.camera, point);
         Vec3s towards = scattering(scene.snapshot.media, point, -u / max(distance, 1e-20f), [&](size_t m) HWY_ATTR {
             const Medium& medium = scene.snapshot.media[m];
             return density16(medium, point) * grey_extinction(medium.optics);
         });
         if (walk.light.filter) towards = walk.filtered(towards, point, distance);
-        sum = fused(towards, zero_unless(here, amount), sum);
+        sum = fma(towards, zero_unless(here, amount), sum);
     }
     return sum;
 }
@@ -58,10 +58,10 @@ Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch,
 // The same, split where rays enter and leave the boxes of the media from `medium` on.
 Vec3s closed_light_in_media(const BeamWalk& walk, const Interval<Floats>& stretch, const Mask16& wanted,
                             size_t medium = 0) {
-    const std::vector<Medium>& media = walk.picture.scene->snapshot.media;
+    const std::vector<Medium>& media = walk.froxels.scene->snapshot.media;
     if (medium == media.size()) return closed_light_within(walk, stretch, wanted);
     const Floats &nearest = walk.by_lamp.nearest, from = max(stretch.low + nearest, 0.0f);
-    const LightPaths paths{walk.rays.origin, walk.rays.direction, stretch.high + nearest};
+    const Segments16 paths{walk.rays.origin, walk.rays.direction, stretch.high + nearest};
     Interval<Floats> box = inside_box(media[medium], paths);
     box = {max(box.low, from) - nearest, box.high - nearest};
     return cut_by(box, stretch, wanted, [&](const Interval<Floats>& part, const Mask16& some) HWY_ATTR {
@@ -86,8 +86,8 @@ Vec3s closed_beam_light(const BeamWalk& walk, const LitIntervals* lit, const Int
                                    min(chord.high, load(row.high) - walk.by_lamp.nearest)};
         const Mask16 some = met & (one.high > one.low);
         if (any(some))
-            sum = fused(add({zero_unless(some, one.low), zero_unless(some, one.high)}, some),
-                        zero_unless(some, load(row.share)), sum);
+            sum = fma(add({zero_unless(some, one.low), zero_unless(some, one.high)}, some),
+                      zero_unless(some, load(row.share)), sum);
     }
     return sum;
 }

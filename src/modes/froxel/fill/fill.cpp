@@ -49,7 +49,7 @@ void put(const Fill& fill, const Lanes& where, int slice, const Vec3s& light, co
         hn::StoreInterleaved4(light.x.part[i], light.y.part[i], light.z.part[i], extinction.part[i], FloatTag(),
                               rgbs + 4 * i * lane_step);
     for (size_t i = 0; i < 16; ++i)
-        if (where.there[i]) std::memcpy(fill.light.at(fill.grid, where.tile[i], slice), rgbs + 4 * i, 16);
+        if (where.in_grid[i]) std::memcpy(fill.light.at(fill.grid, where.tile[i], slice), rgbs + 4 * i, 16);
 }
 
 HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
@@ -63,13 +63,13 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
     for (std::array<float, 16>& sum : packet.beams.sums) sum.fill(0);
     for (int sample = 0; sample < fill.samples(); ++sample) {
         const size_t s = static_cast<size_t>(sample);
-        const FroxelSamples looks = look(fill, packet.where, packet.first[s], slice, sample);
-        const FroxelLanes whole = froxel_lanes(fill.grid, looks);
+        const FroxelSamples points = froxel_samples(fill, packet.where, packet.first[s], slice, sample);
+        const FroxelLanes whole = froxel_lanes(fill.grid, points);
         const Floats here = find_extinctions(fill, packet, whole, slice, sample);
         total = total + here;
         const FroxelLanes lanes = sheet ? in_fog(snapshot.media, whole, extinction) : whole;
-        const Mask16 lit = lanes.active & (here > 0.0f) & (load(looks.lit) > 0.0f);
-        const Job job{packet.where, looks,
+        const Mask16 lit = lanes.active & (here > 0.0f) & (load(points.lit) > 0.0f);
+        const Job job{packet.where, points,
                       slice,        sample,
                       sheet,        fill.exact() ? &packet.exact[s] : nullptr,
                       extinction,   here * whole.length * fill.scene.style.view_depth};
@@ -78,7 +78,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
         Vec3s sum = other_light(fill, lanes, extinction);
         for (size_t i = 0; i < snapshot.lights.size(); ++i)
             if (fill.wants(i)) sum = sum + scattered_from(fill, i, lanes, lit, job);
-        light = fused(sum, style_fade(fill.scene.style, fill.grid.camera, lanes.point), light);
+        light = fma(sum, style_fade(fill.scene.style, fill.grid.camera, lanes.point), light);
     }
     const Floats inverse = zero_unless(total > 0.0f, 1.0f / max(total, 1e-30f));
     if (has_beams(fill)) put_beams(fill, packet.where, packet.beams, slice);
@@ -87,7 +87,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
 
 // Whether any visible froxel of a tile has to be relit.
 bool is_wanted(const Fill& fill, const Lanes& lanes, int i) {
-    if (!lanes.there[i] || !fill.pass.stale) return lanes.there[i];
+    if (!lanes.in_grid[i] || !fill.pass.stale) return lanes.in_grid[i];
     const size_t slices = static_cast<size_t>(fill.grid.slices());
     for (size_t k = 0; k < slices && !is_hidden(fill.grid, fill.tiles, lanes.tile[i], static_cast<int>(k)); ++k)
         if (!fill.pass.stale[lanes.tile[i] * slices + k]) return true;
@@ -114,11 +114,11 @@ bool set_lanes(const Fill& fill, ivec2 corner, int stride, Lanes& lanes) {
     lanes.last = 0;
     for (int i = 0; i < 16; ++i) {
         lanes.at[i] = corner + stride * ivec2(i % 4, i / 4);
-        lanes.there[i] = lanes.at[i].x < fill.grid.size.x && lanes.at[i].y < fill.grid.size.y;
-        lanes.tile[i] = lanes.there[i] ? fill.grid.tile_index(lanes.at[i]) : 0;
-        lanes.farthest[i] = lanes.there[i] ? fill.tiles.farthest[lanes.tile[i]] : -infinity;
-        some |= lanes.there[i];
-        if (lanes.there[i])
+        lanes.in_grid[i] = lanes.at[i].x < fill.grid.size.x && lanes.at[i].y < fill.grid.size.y;
+        lanes.tile[i] = lanes.in_grid[i] ? fill.grid.tile_index(lanes.at[i]) : 0;
+        lanes.farthest[i] = lanes.in_grid[i] ? fill.tiles.farthest[lanes.tile[i]] : -infinity;
+        some |= lanes.in_grid[i];
+        if (lanes.in_grid[i])
             lanes.last = std::max(lanes.last, static_cast<int>(seen_slices(fill.grid, fill.tiles, lanes.tile[i])));
     }
     return some;
@@ -150,7 +150,7 @@ void fill_block(const Fill& fill, ivec2 corner, int stride, size_t block) {
             put_beams(fill, packet.where, packet.beams, slice);
         const size_t behind = static_cast<size_t>(fill.grid.slices() - packet.where.last);
         for (size_t i = 0; i < 16; ++i)
-            if (packet.where.there[i])
+            if (packet.where.in_grid[i])
                 std::fill_n(fill.light.at(fill.grid, packet.where.tile[i], packet.where.last), 4 * behind, 0.0f);
     }
 }

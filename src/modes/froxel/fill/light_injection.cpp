@@ -166,15 +166,15 @@ void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const L
 
 // Intersects two ascending lists of intervals.
 void keep_common(const std::vector<Interval<double>>& other, std::vector<Interval<double>>& stretches) {
-    static thread_local std::vector<Interval<double>> common;
-    common.clear();
+    static thread_local std::vector<Interval<double>> intersection;
+    intersection.clear();
     for (size_t i = 0, j = 0; i < stretches.size() && j < other.size();) {
         const Interval<double> both{std::max(stretches[i].low, other[j].low),
                                     std::min(stretches[i].high, other[j].high)};
-        if (!both.empty()) common.push_back(both);
+        if (!both.empty()) intersection.push_back(both);
         (stretches[i].high < other[j].high ? i : j) += 1;
     }
-    std::swap(common, stretches);
+    std::swap(intersection, stretches);
 }
 
 // Adds one line of each tile. Shadows are found only where the light reaches.
@@ -258,8 +258,9 @@ namespace {
 Interval<double> near_reach(const Light& light, const NearLight& near, const Ray& line) {
     const dvec3 origin(line.origin), direction(line.direction);
     const Interval<double> reach = light_reach(light, origin, direction);
-    return std::isinf(near.radius) ? reach
-                                   : common(reach, inside_ball(dvec3(light.position), near.radius, origin, direction));
+    return std::isinf(near.radius)
+               ? reach
+               : intersection(reach, inside_ball(dvec3(light.position), near.radius, origin, direction));
 }
 }
 
@@ -272,7 +273,8 @@ void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const Froxe
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!(lines.active >> lane & 1)) continue;
         Ray& line = lines.rays[lane];
-        if (reaches[lane].end > 0) chords[lane] = common({0, line.t_max}, near_reach(lamp, scene.near(light), line));
+        if (reaches[lane].end > 0)
+            chords[lane] = intersection({0, line.t_max}, near_reach(lamp, scene.near(light), line));
         if (chords[lane].empty())
             lines.active &= ~(1u << lane);
         else
@@ -288,7 +290,7 @@ void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const Froxe
         };
         add(chords[lane], inside);
         for (const Interval<double>& stretch : stretches[lane])
-            if (const Interval<double> part = common(stretch, chords[lane]); !part.empty()) add(part, lit);
+            if (const Interval<double> part = intersection(stretch, chords[lane]); !part.empty()) add(part, lit);
     }
 }
 }

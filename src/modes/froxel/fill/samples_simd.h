@@ -36,7 +36,7 @@ struct Fill {
 struct Lanes {
     ivec2 at[16];
     size_t tile[16];
-    bool there[16];
+    bool in_grid[16];
     alignas(64) float farthest[16]; // farthest surface of the tile's rays; -infinity where not there
     int last = 0;                   // one past the last slice that any lane sees
 };
@@ -75,21 +75,21 @@ FirstRays first_rays(const Fill& fill, const Lanes& lanes, int sample) {
     for (size_t i = 0; i < 16; ++i) {
         const vec2 pixel = fill.grid.pixel_of(vec2(lanes.at[i]) + fill.tiles.offsets[first.ray]);
         first.x[i] = pixel.x, first.y[i] = pixel.y;
-        first.depth[i] = lanes.there[i] ? fill.tiles.depth[lanes.tile[i] * fill.tiles.rays() + first.ray] : -infinity;
+        first.depth[i] = lanes.in_grid[i] ? fill.tiles.depth[lanes.tile[i] * fill.tiles.rays() + first.ray] : -infinity;
     }
     return first;
 }
 
 // Marks the lanes that have to be relit.
-void set_lit(const Fill& fill, const Lanes& lanes, int slice, FroxelSamples& looks) {
-    if (!fill.pass.stale) return store(Floats(1.0f), looks.lit);
+void set_lit(const Fill& fill, const Lanes& lanes, int slice, FroxelSamples& points) {
+    if (!fill.pass.stale) return store(Floats(1.0f), points.lit);
     const size_t slices = static_cast<size_t>(fill.grid.slices()), k = static_cast<size_t>(slice);
-    for (size_t i = 0; i < 16; ++i) looks.lit[i] = fill.pass.stale[lanes.tile[i] * slices + k] ? 0.0f : 1.0f;
+    for (size_t i = 0; i < 16; ++i) points.lit[i] = fill.pass.stale[lanes.tile[i] * slices + k] ? 0.0f : 1.0f;
 }
 
 // Sample of one lane: on the first ray, in turn, that is not blocked at its depth; else on the deepest, in front of its
 // surface.
-void look_along(const Fill& fill, const Lanes& lanes, int slice, int sample, size_t i, FroxelSamples& looks) {
+void lane_sample(const Fill& fill, const Lanes& lanes, int slice, int sample, size_t i, FroxelSamples& points) {
     const FroxelTiles& tiles = fill.tiles;
     const size_t rays = tiles.rays(), k = static_cast<size_t>(slice), first = first_ray(fill, sample);
     const float near = fill.grid.faces[k], far = fill.grid.faces[k + 1];
@@ -110,50 +110,50 @@ void look_along(const Fill& fill, const Lanes& lanes, int slice, int sample, siz
             break;
         }
     const vec2 pixel = fill.grid.pixel_of(vec2(lanes.at[i]) + tiles.offsets[ray]);
-    looks.x[i] = pixel.x, looks.y[i] = pixel.y, looks.z[i] = z;
-    looks.high[i] = std::min(far, depth[ray]), looks.first[i] = ray == first ? 1.0f : 0.0f;
+    points.x[i] = pixel.x, points.y[i] = pixel.y, points.z[i] = z;
+    points.high[i] = std::min(far, depth[ray]), points.first[i] = ray == first ? 1.0f : 0.0f;
 }
 
-FroxelSamples look(const Fill& fill, const Lanes& lanes, const FirstRays& first, int slice, int sample) {
+FroxelSamples froxel_samples(const Fill& fill, const Lanes& lanes, const FirstRays& first, int slice, int sample) {
     const float near = fill.grid.faces[static_cast<size_t>(slice)];
     const float far = fill.grid.faces[static_cast<size_t>(slice) + 1];
-    FroxelSamples looks;
+    FroxelSamples points;
     const Mask16 active = load(lanes.farthest) > near;
     const Floats depth = load(first.depth), middle = 0.5f * (near + far);
     const Mask16 seen = active & (depth > near);
-    store(select(active, 1.0f, 0.0f), looks.active), store(Floats(near), looks.low);
-    store(select(seen, 1.0f, 0.0f), looks.first), store(min(Floats(far), depth), looks.high);
-    store(load(first.x), looks.x), store(load(first.y), looks.y);
-    store(select(seen & (depth <= middle), (near + depth) * 0.5f, middle), looks.z);
-    set_lit(fill, lanes, slice, looks);
-    if (fill.exact() && !any(active & !seen)) return looks;
+    store(select(active, 1.0f, 0.0f), points.active), store(Floats(near), points.low);
+    store(select(seen, 1.0f, 0.0f), points.first), store(min(Floats(far), depth), points.high);
+    store(load(first.x), points.x), store(load(first.y), points.y);
+    store(select(seen & (depth <= middle), (near + depth) * 0.5f, middle), points.z);
+    set_lit(fill, lanes, slice, points);
+    if (fill.exact() && !any(active & !seen)) return points;
     for (size_t i = 0; i < 16; ++i)
-        if (looks.active[i] > 0 && !(fill.exact() && looks.first[i] > 0))
-            look_along(fill, lanes, slice, sample, i, looks);
-    return looks;
+        if (points.active[i] > 0 && !(fill.exact() && points.first[i] > 0))
+            lane_sample(fill, lanes, slice, sample, i, points);
+    return points;
 }
 
 // Lines of the lanes: origin + z·step at planar depth z.
 struct Lines {
     Vec3s origin, step;
 };
-HWY_INLINE Lines lines_of(const FroxelGrid& grid, const FroxelSamples& looks) {
-    const Floats x = load(looks.x), y = load(looks.y);
-    return {fused(splat(grid.origin_x), x, fused(splat(grid.origin_y), y, splat(grid.origin))),
-            fused(splat(grid.step_x), x, fused(splat(grid.step_y), y, splat(grid.step)))};
+HWY_INLINE Lines lines_of(const FroxelGrid& grid, const FroxelSamples& points) {
+    const Floats x = load(points.x), y = load(points.y);
+    return {fma(splat(grid.origin_x), x, fma(splat(grid.origin_y), y, splat(grid.origin))),
+            fma(splat(grid.step_x), x, fma(splat(grid.step_y), y, splat(grid.step)))};
 }
 
-FroxelLanes froxel_lanes(const FroxelGrid& grid, const FroxelSamples& looks) {
-    const Lines lines = lines_of(grid, looks);
-    const Floats slant = sqrt(dot(lines.step, lines.step)), z = load(looks.z), low = load(looks.low);
+FroxelLanes froxel_lanes(const FroxelGrid& grid, const FroxelSamples& points) {
+    const Lines lines = lines_of(grid, points);
+    const Floats slant = sqrt(dot(lines.step, lines.step)), z = load(points.z), low = load(points.low);
     FroxelLanes lanes;
-    lanes.point = fused(lines.step, z, lines.origin), lanes.step = lines.step, lanes.z = z;
-    lanes.start = fused(lines.step, low, lines.origin);
+    lanes.point = fma(lines.step, z, lines.origin), lanes.step = lines.step, lanes.z = z;
+    lanes.start = fma(lines.step, low, lines.origin);
     lanes.toward = lines.step * (1.0f / slant);
-    lanes.length = slant * max(load(looks.high) - low, 0.0f);
-    lanes.active = load(looks.active) > 0.0f;
+    lanes.length = slant * max(load(points.high) - low, 0.0f);
+    lanes.active = load(points.active) > 0.0f;
     const float wide = glm::length(grid.origin_x), wider = glm::length(grid.step_x);
-    const Floats side = fused(z, wider, wide) * static_cast<float>(grid.tile);
+    const Floats side = fma(z, wider, wide) * static_cast<float>(grid.tile);
     lanes.width2 = side * side * (1 / pi);
     return lanes;
 }
@@ -174,15 +174,15 @@ FroxelLanes in_fog(const std::vector<Medium>& media, const FroxelLanes& lanes, c
     for (size_t m = 0; m < media.size(); ++m) {
         const Interval<Floats> part = inside_box(media[m], {lanes.start, lanes.toward, lanes.length});
         const Floats weight = zero_unless(part.high > part.low, load(extinction[m]));
-        low = fused(weight, part.low, low), high = fused(weight, part.high, high), total = total + weight;
+        low = fma(weight, part.low, low), high = fma(weight, part.high, high), total = total + weight;
     }
     const Mask16 some = total > 0.0f;
     const Floats inverse = 1.0f / select(some, total, 1.0f);
     low = select(some, low * inverse, 0.0f), high = select(some, high * inverse, lanes.length);
     FroxelLanes cut = lanes;
-    cut.start = fused(lanes.toward, low, lanes.start), cut.length = high - low;
+    cut.start = fma(lanes.toward, low, lanes.start), cut.length = high - low;
     const Floats middle = (low + high) * 0.5f;
-    cut.point = fused(lanes.toward, middle, lanes.start);
+    cut.point = fma(lanes.toward, middle, lanes.start);
     cut.z = lanes.z + dot(cut.point - lanes.point, lanes.toward) / sqrt(dot(lanes.step, lanes.step));
     return cut;
 }
@@ -190,7 +190,7 @@ FroxelLanes in_fog(const std::vector<Medium>& media, const FroxelLanes& lanes, c
 // Mean extinction along the segments: exact for closed forms, up to four samples for bricks.
 Floats mean_extinction(const Medium& medium, const FroxelLanes& lanes, float thickness) {
     if (medium.density.kind != DensityKind::bricks) {
-        const LightPaths paths{lanes.start, lanes.toward, lanes.length};
+        const Segments16 paths{lanes.start, lanes.toward, lanes.length};
         return zero_unless(lanes.active, analytic_depth16(medium, paths) / max(lanes.length, 1e-20f));
     }
     const float voxels = thickness * glm::length(vec3(medium.density.bricks->world_to_index[0]));
@@ -199,7 +199,7 @@ Floats mean_extinction(const Medium& medium, const FroxelLanes& lanes, float thi
     Floats sum = 0.0f;
     for (int i = 0; i < count; ++i) {
         const Floats at = lanes.length * ((static_cast<float>(i) + 0.5f) / static_cast<float>(count));
-        sum = sum + density16(medium, fused(lanes.toward, at, lanes.start));
+        sum = sum + density16(medium, fma(lanes.toward, at, lanes.start));
     }
     return zero_unless(lanes.active, sum * (grey_extinction(medium.optics) / static_cast<float>(count)));
 }

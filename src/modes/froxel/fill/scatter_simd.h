@@ -26,7 +26,7 @@ struct LaneLightSamples {
 // The packet of froxels being filled: 16 tiles, one slice, one sample.
 struct Job {
     const Lanes& where;
-    const FroxelSamples& looks;
+    const FroxelSamples& points;
     int slice, sample;
     bool sheet;                    // segments are shortened to fog thinner than the slice
     const LightInjection* exact;   // null unless FroxelVisibility::intervals
@@ -35,9 +35,9 @@ struct Job {
 };
 
 // Mean position of uniform light as seen through a segment of this optical depth, as a fraction of the segment.
-Floats mean_seen_place(const Floats& depth) {
+Floats mean_seen_position(const Floats& depth) {
     const Floats square = depth * depth;
-    const Floats series = fused(depth, fused(square, fused(square, -1.0f / 30240, 1.0f / 720), -1.0f / 12), 0.5f);
+    const Floats series = fma(depth, fma(square, fma(square, -1.0f / 30240, 1.0f / 720), -1.0f / 12), 0.5f);
     const Floats large = max(depth, 0.5f);
     return select(depth < 0.5f, series, 1.0f / large - 1.0f / (exp(min(large, 80.0f)) - 1.0f));
 }
@@ -58,13 +58,13 @@ void see_through_slice(const Light& light, const FroxelLanes& lanes, const Job& 
         const Vec3s offset = splat(light.position) - arrived.point;
         const float least = capped_radius(light);
         const Floats ratio = spread * length * 0.5f / max(sqrt(dot(offset, offset)), least);
-        spread = spread / sqrt(fused(ratio * (pi / 6), ratio / (ratio + 1.5f), 1.0f));
+        spread = spread / sqrt(fma(ratio * (pi / 6), ratio / (ratio + 1.5f), 1.0f));
     }
     const Floats begin = mean - spread * 0.5f, within = job.depth * spread;
     const Floats seen = exp(-(job.depth * begin)) * mean_transmittance(within) / mean_transmittance(job.depth);
-    const Floats moved = (mean_seen_place(within) - 0.5f) * spread * lanes.length;
+    const Floats moved = (mean_seen_position(within) - 0.5f) * spread * lanes.length;
     arrived.amount = select(dim, arrived.amount * seen, arrived.amount);
-    arrived.point = fused(lanes.toward, zero_unless(dim, moved), arrived.point);
+    arrived.point = fma(lanes.toward, zero_unless(dim, moved), arrived.point);
 }
 
 // Froxels that are large relative to their distance from a local light. Exact lines account for their depth, and for
@@ -119,9 +119,9 @@ SpreadPoints spread_points(const Fill& fill, size_t index, const FroxelLanes& fo
     }
     const Floats x = load(u[0]), y = load(u[1]);
     Vec3s& point = points.froxels.point;
-    point = fused(fog.toward, fog.length * load(u[2]), fog.start);
-    point = fused(splat(fill.grid.step_x), x * fog.z, fused(splat(fill.grid.origin_x), x, point));
-    point = fused(splat(fill.grid.step_y), y * fog.z, fused(splat(fill.grid.origin_y), y, point));
+    point = fma(fog.toward, fog.length * load(u[2]), fog.start);
+    point = fma(splat(fill.grid.step_x), x * fog.z, fma(splat(fill.grid.origin_x), x, point));
+    point = fma(splat(fill.grid.step_y), y * fog.z, fma(splat(fill.grid.origin_y), y, point));
     return points;
 }
 
@@ -139,7 +139,7 @@ Floats alpha_share(const Fill& fill, size_t index, const FroxelLanes& lanes, con
     Floats passed = 0.0f, all = 0.0f, open = 0.0f, shaded = 0.0f;
     for (int k = 0; k < count; ++k) {
         const SpreadPoints at = spread_points(fill, index, fog, job, k, count);
-        const LightSamples arrival = arriving(light, fill.scene.cones[index], at.froxels.point);
+        const LightSamples arrival = arrival16(light, fill.scene.cones[index], at.froxels.point);
         const auto visible = [&](Through surfaces) HWY_ATTR {
             return visible_at_points(*occluders, light, at.froxels, arrival, wanted,
                                      is_soft(light) ? at.of_light : nullptr, surfaces);
@@ -170,9 +170,10 @@ void put_near(const Fill& fill, size_t index, const Job& job, const Mask16& near
 }
 
 // Evaluates light in the middle of a sheet if its point is outside, or if the sheet fills less than half the slice.
-void hold_in_fog(const FroxelLanes& lanes, const FroxelSamples& looks, const Mask16& which, LaneLightSamples& arrived) {
+void hold_in_fog(const FroxelLanes& lanes, const FroxelSamples& points, const Mask16& which,
+                 LaneLightSamples& arrived) {
     const Floats place = dot(arrived.point - lanes.start, lanes.toward);
-    const Floats slice = (load(looks.high) - load(looks.low)) * sqrt(dot(lanes.step, lanes.step));
+    const Floats slice = (load(points.high) - load(points.low)) * sqrt(dot(lanes.step, lanes.step));
     const Mask16 held = which & ((place < 0.0f) | (place > lanes.length) | (lanes.length < slice * 0.5f));
     arrived.point = {select(held, lanes.point.x, arrived.point.x), select(held, lanes.point.y, arrived.point.y),
                      select(held, lanes.point.z, arrived.point.z)};
@@ -180,23 +181,23 @@ void hold_in_fog(const FroxelLanes& lanes, const FroxelSamples& looks, const Mas
 
 LaneLightSamples arrivals(const Fill& fill, size_t index, const FroxelLanes& lanes, const Mask16& lit, const Job& job) {
     const Light& light = fill.scene.snapshot.lights[index];
-    LightSamples plain = arriving(light, fill.scene.cones[index], lanes.point);
+    LightSamples plain = arrival16(light, fill.scene.cones[index], lanes.point);
     plain.amount = plain.amount * (1.0f - near_share(fill.scene.near(index), plain.distance));
     LaneLightSamples arrived{lanes.point, zero_unless(lit, plain.amount)};
     const Mask16 near = lit & near_lanes(fill, index, lanes, plain.distance);
     Mask16 by_rays = arrived.amount > 0.0f, along = near; // along: light is known over the whole segment
     by_rays = by_rays & !near;
     if (job.exact) {
-        const Mask16 sliced = lit & !near & (load(job.looks.first) > 0.0f);
+        const Mask16 sliced = lit & !near & (load(job.points.first) > 0.0f);
         const size_t at = index * static_cast<size_t>(fill.grid.slices()) + static_cast<size_t>(job.slice);
         by_rays = by_rays & !sliced, along = along | sliced;
         if (is_distant(light)) {
             const LightInjection::Depths& depths = job.exact->depths[at];
             const Floats length = zero_unless(sliced, load(depths.length));
             const Mask16 some = length > 0.0f;
-            const Floats low = load(job.looks.low), deep = max(load(job.looks.high) - low, 1e-30f);
+            const Floats low = load(job.points.low), deep = max(load(job.points.high) - low, 1e-30f);
             const Floats z = select(some, load(depths.first) / max(length, 1e-30f), lanes.z);
-            arrived.point = fused(lanes.step, z - lanes.z, lanes.point);
+            arrived.point = fma(lanes.step, z - lanes.z, lanes.point);
             arrived.amount = select(sliced, min(length / deep, 1.0f), arrived.amount);
         } else {
             const LightInjection::Arrivals& exact = job.exact->arrivals[at];
@@ -207,7 +208,7 @@ LaneLightSamples arrivals(const Fill& fill, size_t index, const FroxelLanes& lan
                              select(some, load(exact.point[1]), arrived.point.y),
                              select(some, load(exact.point[2]), arrived.point.z)};
         }
-        if (job.sheet) hold_in_fog(lanes, job.looks, sliced, arrived);
+        if (job.sheet) hold_in_fog(lanes, job.points, sliced, arrived);
         const Mask16 reached = sliced & (arrived.amount > 0.0f);
         arrived.amount =
             select(reached, arrived.amount * alpha_share(fill, index, lanes, job, reached), arrived.amount);
@@ -245,10 +246,10 @@ Vec3s other_light(const Fill& fill, const FroxelLanes& lanes, const float (*exti
     const Snapshot& snapshot = fill.scene.snapshot;
     const FluenceGrid* fluence = fill.scene.fluence.get();
     const auto extinction_of = [&](size_t m) HWY_ATTR { return load(extinction[m]); };
-    if (fill.pass.only < 0) return glow(snapshot, fluence, lanes.point, lanes.toward, extinction_of);
+    if (fill.pass.only < 0) return other_source(snapshot, fluence, lanes.point, lanes.toward, extinction_of);
     const size_t part = static_cast<size_t>(fill.pass.only), lights = snapshot.lights.size();
     if (part < lights) return splat(vec3(0));
-    return glow_of(OtherLight{part - lights}, snapshot, fluence, lanes.point, lanes.toward, extinction_of);
+    return other_source(OtherLight{part - lights}, snapshot, fluence, lanes.point, lanes.toward, extinction_of);
 }
 }
 }

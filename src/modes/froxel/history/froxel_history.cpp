@@ -29,7 +29,7 @@ bool is_near_light(const FroxelGrid& grid, ivec2 at, int slice, std::span<const 
 bool all_finite(const float* v) { return std::isfinite(v[0] + v[1] + v[2]); }
 }
 
-void clean(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& light) {
+void clear_invalid(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& light) {
     for_tiles(grid, [&](ivec2, size_t tile) {
         for (int k = 0; k < grid.slices(); ++k) {
             float* v = light.at(grid, tile, k);
@@ -39,8 +39,8 @@ void clean(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& light)
     });
 }
 
-FroxelHistory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light, FroxelStatics statics) {
-    clean(grid, tiles, light);
+FroxelHistory make_history(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light, FroxelStatics statics) {
+    clear_invalid(grid, tiles, light);
     return {grid, std::move(light), std::move(statics)};
 }
 

@@ -15,10 +15,10 @@ struct FroxelHistory {
     FroxelStatics statics;
 };
 
-// Zeroes froxels that are hidden, empty or not finite. memory_of() makes a history of the result.
-void clean(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& light);
-FroxelHistory memory_of(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light,
-                        FroxelStatics statics = {});
+// Zeroes froxels that are hidden, empty or not finite. make_history() makes a history of the result.
+void clear_invalid(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& light);
+FroxelHistory make_history(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light,
+                           FroxelStatics statics = {});
 
 // The history's light and extinction at the center of each of this frame's froxels; zeros where the last frame did not
 // see it.

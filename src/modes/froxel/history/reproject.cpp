@@ -16,12 +16,12 @@ constexpr size_t froxel_lanes = hn::MaxLanes(FroxelTag()), froxel_parts = 4 / fr
 
 // Positions of 16 froxel centers in the last frame's grid: cells of tiles, slices in front and behind, and
 // interpolation weights. `known` is 0 outside.
-struct Recalled {
+struct HistoryTaps {
     alignas(64) int32_t tile[16], near[16], step[16];
     alignas(64) float x[16], y[16], depth[16], known[16];
 };
 
-struct Recall {
+struct Reprojector {
     const FroxelHistory& memory;
     const FroxelGrid& grid;
     const FroxelTiles& tiles;
@@ -38,15 +38,15 @@ HWY_INLINE Vec3s projected(const FroxelGrid& grid, const Vec3s& point) {
     const float height = ortho ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov);
     const float scale = static_cast<float>(grid.picture.y) / height;
     const Floats per_metre = ortho ? Floats(scale) : Floats(scale) / select(z > 0.0f, z, 1.0f);
-    return {fused(dot(offset, splat(camera.right)), per_metre, 0.5f * static_cast<float>(grid.picture.x)),
-            fused(-dot(offset, splat(camera.up)), per_metre, 0.5f * static_cast<float>(grid.picture.y)), z};
+    return {fma(dot(offset, splat(camera.right)), per_metre, 0.5f * static_cast<float>(grid.picture.x)),
+            fma(-dot(offset, splat(camera.up)), per_metre, 0.5f * static_cast<float>(grid.picture.y)), z};
 }
 
-void find(const Recall& reproject, const Vec3s& points, Recalled& found) {
+void find(const Reprojector& reproject, const Vec3s& points, HistoryTaps& found) {
     const FroxelGrid& grid = reproject.memory.grid;
     const Vec3s place = projected(grid, points);
     const float per_tile = 1 / static_cast<float>(grid.tile);
-    const Floats x = fused(place.x, per_tile, 0.5f), y = fused(place.y, per_tile, 0.5f);
+    const Floats x = fma(place.x, per_tile, 0.5f), y = fma(place.y, per_tile, 0.5f);
     const float right = static_cast<float>(grid.size.x - 1), bottom = static_cast<float>(grid.size.y - 1);
     constexpr float slack = 1e-3f; // of a tile: includes the outermost tile centers
     const Mask16 inside = (x >= -slack) & (y >= -slack) & (x <= right + slack) & (y <= bottom + slack) &
@@ -72,7 +72,7 @@ void find(const Recall& reproject, const Vec3s& points, Recalled& found) {
 }
 
 // Trilinear mean of the known neighbors; zeros where too few are known.
-HWY_INLINE void mix(const Recall& reproject, const Recalled& found, size_t lane, float* result) {
+HWY_INLINE void mix(const Reprojector& reproject, const HistoryTaps& found, size_t lane, float* result) {
     constexpr float least = 0.3f; // minimum weight of known neighbors
     const FroxelTag tag;
     const FroxelGrid& grid = reproject.memory.grid;
@@ -100,7 +100,7 @@ HWY_INLINE void mix(const Recall& reproject, const Recalled& found, size_t lane,
     for (size_t c = 0; c < 4; ++c) result[c] = enough ? total[c] / extinctions : 0;
 }
 
-void recall_tile(const Recall& reproject, ivec2 at) {
+void reproject_tile(const Reprojector& reproject, ivec2 at) {
     const FroxelGrid& grid = reproject.grid;
     const size_t tile = grid.tile_index(at), slices = static_cast<size_t>(grid.slices());
     float* result = reproject.result.light.at(grid, tile, 0);
@@ -114,8 +114,8 @@ void recall_tile(const Recall& reproject, ivec2 at) {
             const size_t k = std::min(first + i, seen - 1);
             z[i] = 0.5f * (grid.faces[k] + grid.faces[k + 1]);
         }
-        Recalled found;
-        find(reproject, fused(splat(step), load(z), splat(origin)), found);
+        HistoryTaps found;
+        find(reproject, fma(splat(step), load(z), splat(origin)), found);
         for (size_t i = 0; i < std::min<size_t>(16, seen - first); ++i)
             if (found.known[i] > 0) {
                 mix(reproject, found, i, result + 4 * (first + i));
@@ -129,13 +129,13 @@ void recall_tile(const Recall& reproject, ivec2 at) {
     std::fill(result + 4 * seen, result + 4 * slices, 0.0f);
 }
 
-void recall_kernel(const FroxelHistory& memory, const FroxelGrid& grid, const FroxelTiles& tiles,
-                   Reprojection& result) {
-    Recall reproject{memory, grid, tiles, result, {}};
+void reproject_kernel(const FroxelHistory& memory, const FroxelGrid& grid, const FroxelTiles& tiles,
+                      Reprojection& result) {
+    Reprojector reproject{memory, grid, tiles, result, {}};
     for (size_t k = 0; k + 1 < memory.grid.faces.size(); ++k)
         reproject.centers.push_back(0.5f * (memory.grid.faces[k] + memory.grid.faces[k + 1]));
     parallel_for(grid.size.y, [&](int64_t y) {
-        for (int x = 0; x < grid.size.x; ++x) recall_tile(reproject, {x, static_cast<int>(y)});
+        for (int x = 0; x < grid.size.x; ++x) reproject_tile(reproject, {x, static_cast<int>(y)});
     });
 }
 }
@@ -144,12 +144,12 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace tyndall {
-HWY_EXPORT(recall_kernel);
+HWY_EXPORT(reproject_kernel);
 Reprojection reproject(const FroxelHistory& memory, const FroxelGrid& grid, const FroxelTiles& tiles) {
     Reprojection result;
     result.light.values.resize(4 * grid.tiles() * static_cast<size_t>(grid.slices()));
     result.blur.resize(grid.tiles());
-    HWY_DYNAMIC_DISPATCH(recall_kernel)(memory, grid, tiles, result);
+    HWY_DYNAMIC_DISPATCH(reproject_kernel)(memory, grid, tiles, result);
     return result;
 }
 }

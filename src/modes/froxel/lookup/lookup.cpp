@@ -22,17 +22,17 @@ struct FaceSums {
 };
 
 // For rays between the same tiles that end in slices least..most: interpolates each slice for all rays at once.
-void mix_slices(const Places& places, const float* const* columns, const Ints& slice, int least, int most,
+void mix_slices(const FroxelTaps& taps, const float* const* columns, const Ints& slice, int least, int most,
                 FaceSums& result) {
     const Floats place = to_floats(slice);
     for (int k = least; k <= most; ++k) {
         const Mask16 here = place == static_cast<float>(k);
         for (size_t c = 0; c < 4; ++c) {
             Floats near = 0.0f, far = 0.0f;
-            for (int t = 0; t < places.count; ++t) {
+            for (int t = 0; t < taps.count; ++t) {
                 const float* from = columns[t] + 4 * k + c;
-                const Floats weight = load(places.weights[t]);
-                near = fused(weight, from[0], near), far = fused(weight, from[4], far);
+                const Floats weight = load(taps.weights[t]);
+                near = fma(weight, from[0], near), far = fma(weight, from[4], far);
             }
             result.near[c] = k == least ? near : select(here, near, result.near[c]);
             result.far[c] = k == least ? far : select(here, far, result.far[c]);
@@ -41,16 +41,16 @@ void mix_slices(const Places& places, const float* const* columns, const Ints& s
 }
 
 // Interpolates ray by ray. Both faces of a slice are adjacent in memory: eight floats per tile.
-void mix_rays(const FroxelGrid& grid, const FroxelSums& sums, const Places& places, const int32_t (&slice)[16],
+void mix_rays(const FroxelGrid& grid, const FroxelSums& sums, const FroxelTaps& taps, const int32_t (&slice)[16],
               FaceSums& result) {
     alignas(64) float values[2][64]; // [face][4 · lane + channel]
     const TapTag tag;
     for (size_t lane = 0; lane < 16; ++lane) {
         hn::Vec<TapTag> total[tap_parts];
         for (size_t p = 0; p < tap_parts; ++p) total[p] = hn::Zero(tag);
-        for (int t = 0; t < places.count; ++t) {
-            const float* from = sums.at(grid, static_cast<size_t>(places.tiles[t][lane]), slice[lane]);
-            const auto weight = hn::Set(tag, places.weights[t][lane]);
+        for (int t = 0; t < taps.count; ++t) {
+            const float* from = sums.at(grid, static_cast<size_t>(taps.tiles[t][lane]), slice[lane]);
+            const auto weight = hn::Set(tag, taps.weights[t][lane]);
             for (size_t p = 0; p < tap_parts; ++p)
                 total[p] = hn::MulAdd(weight, hn::LoadU(tag, from + p * tap_lanes), total[p]);
         }
@@ -67,24 +67,24 @@ void mix_rays(const FroxelGrid& grid, const FroxelSums& sums, const Places& plac
     }
 }
 
-FaceSums sums_at(const FroxelPicture& picture, const FroxelSums& sums, const Places& places, const Floats& z) {
+FaceSums sums_at(const FroxelBuffer& froxels, const FroxelSums& sums, const FroxelTaps& taps, const Floats& z) {
     constexpr int few = 4;
-    const FroxelGrid& grid = picture.grid;
+    const FroxelGrid& grid = froxels.grid;
     const float* columns[16]; // of the surrounding tiles, if they are the same for all rays
-    for (int t = 0; t < places.count && places.together; ++t)
-        columns[t] = sums.at(grid, static_cast<size_t>(places.tiles[t][0]), 0);
+    for (int t = 0; t < taps.count && taps.together; ++t)
+        columns[t] = sums.at(grid, static_cast<size_t>(taps.tiles[t][0]), 0);
     const SliceLanes slices = slices_around(grid, z);
     FaceSums result;
     result.behind = slices.behind;
     result.share = max(min((z - slices.before) / (slices.behind - slices.before), 1.0f), 0.0f);
-    for (int t = 0; t < places.count && places.together; ++t) __builtin_prefetch(columns[t] + 4 * slices.least);
-    if (places.together && slices.most - slices.least < few) {
-        mix_slices(places, columns, slices.slice, slices.least, slices.most, result);
+    for (int t = 0; t < taps.count && taps.together; ++t) __builtin_prefetch(columns[t] + 4 * slices.least);
+    if (taps.together && slices.most - slices.least < few) {
+        mix_slices(taps, columns, slices.slice, slices.least, slices.most, result);
         return result;
     }
     alignas(64) int32_t slice[16];
     store(slices.slice, slice);
-    mix_rays(grid, sums, places, slice, result);
+    mix_rays(grid, sums, taps, slice, result);
     return result;
 }
 
@@ -95,8 +95,8 @@ struct Reached {
     Floats last;      // fraction of the slice's light in front of the depth
     Vec3s last_light; // from the last slice
 };
-Reached reach(const FaceSums& faces, const Places& places, float view_depth) {
-    const Floats& slant = places.slant;
+Reached reach(const FaceSums& faces, const FroxelTaps& taps, float view_depth) {
+    const Floats& slant = taps.slant;
     const Floats before = faces.near[3] * slant;
     const Floats across = max(faces.far[3] * slant - before, 0.0f), within = across * faces.share;
     Reached reached;
@@ -106,7 +106,7 @@ Reached reach(const FaceSums& faces, const Places& places, float view_depth) {
     reached.last_light = (far - near) * reached.last;
     // The tiles' lines are slightly longer or shorter than the ray: in homogeneous fog, light is proportional to 1 -
     // e^-depth.
-    const Floats depth = reached.depth * view_depth, ratio = slant / places.tile_slant;
+    const Floats depth = reached.depth * view_depth, ratio = slant / taps.tile_slant;
     const Floats fitted = ratio * mean_transmittance(depth) / mean_transmittance(depth / ratio);
     reached.light = (near + reached.last_light) * fitted;
     reached.last_light = reached.last_light * fitted;
@@ -128,25 +128,25 @@ void store_light(const Vec3s& light, float (&rgb)[3][16]) {
 
 // Validity, reduced by the fraction of light from the ray's last slice if a surface may cut through its froxels, whose
 // light is known only in front of the surface.
-Floats validity_of(const Places& places, const FaceSums& faces, const Reached& end, const Vec3s& beams) {
+Floats validity_of(const FroxelTaps& taps, const FaceSums& faces, const Reached& end, const Vec3s& beams) {
     const Floats all = end.light.x + end.light.y + end.light.z + beams.x + beams.y + beams.z;
     const Floats of_last = end.last_light.x + end.last_light.y + end.last_light.z;
-    const Floats last = zero_unless(places.nearest < faces.behind, of_last / max(all, 1e-30f));
-    return max(min(places.kept * (1.0f - last), 1.0f), 0.0f);
+    const Floats last = zero_unless(taps.nearest < faces.behind, of_last / max(all, 1e-30f));
+    return max(min(taps.kept * (1.0f - last), 1.0f), 0.0f);
 }
 
 // Light of all beams; that of each goes to `of_beams`, unless empty.
-Vec3s all_beams(const FroxelPicture& picture, const RayBatch& batch, const Places& places, const Floats& depth_before,
+Vec3s all_beams(const FroxelBuffer& froxels, const RayBatch& batch, const FroxelTaps& taps, const Floats& depth_before,
                 std::span<vec3> of_beams) {
     Vec3s sum = splat(vec3(0));
-    const size_t count = picture.beams.lights.size();
+    const size_t count = froxels.beams.lights.size();
     if (count == 0) return sum;
-    const BeamRays rays = beam_rays(picture, batch, places);
+    const BeamRays rays = beam_rays(froxels, batch, taps);
     static thread_local RayDepths depths;
     depths.depths.clear();
     alignas(64) float rgb[3][16];
     for (size_t beam = 0; beam < count; ++beam) {
-        const Vec3s light = beam_light(picture, beam, rays, batch, places, depth_before, depths);
+        const Vec3s light = beam_light(froxels, beam, rays, batch, taps, depth_before, depths);
         sum = sum + light;
         if (of_beams.empty()) continue;
         store_light(light, rgb);
@@ -155,33 +155,33 @@ Vec3s all_beams(const FroxelPicture& picture, const RayBatch& batch, const Place
     return sum;
 }
 
-void look_up_kernel(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
+void look_up_kernel(const FroxelBuffer& froxels, const RayBatch& batch, std::span<Scatter> results,
                     std::span<const FroxelSums> shares, std::span<vec3> of_shares, std::span<vec3> of_beams) {
-    Places places;
-    find_places(picture, batch, places);
-    const bool late = any(places.start > picture.grid.faces.front()); // some ray starts behind the first slice
+    FroxelTaps taps;
+    find_taps(froxels, batch, taps);
+    const bool late = any(taps.start > froxels.grid.faces.front()); // some ray starts behind the first slice
     const auto light_of = [&](const FroxelSums& sums, FaceSums& faces, Reached& start, Reached& end) HWY_ATTR {
-        faces = sums_at(picture, sums, places, places.end);
-        end = reach(faces, places, picture.view_depth);
+        faces = sums_at(froxels, sums, taps, taps.end);
+        end = reach(faces, taps, froxels.view_depth);
         if (!late) return end.light;
-        start = reach(sums_at(picture, sums, places, places.start), places, picture.view_depth);
-        return light_between(start, end, picture.view_depth);
+        start = reach(sums_at(froxels, sums, taps, taps.start), taps, froxels.view_depth);
+        return light_between(start, end, froxels.view_depth);
     };
     FaceSums faces;
     Reached start{splat(vec3(0)), 0.0f, 0.0f, splat(vec3(0))}, end = start;
-    const Vec3s of_froxels = light_of(picture.sums, faces, start, end);
-    const Vec3s beams = all_beams(picture, batch, places, start.depth, of_beams);
+    const Vec3s of_froxels = light_of(froxels.sums, faces, start, end);
+    const Vec3s beams = all_beams(froxels, batch, taps, start.depth, of_beams);
     const Vec3s light = of_froxels + beams;
     const Floats through = exp(start.depth - max(end.depth, start.depth));
     alignas(64) float rgb[3][16], first[64], seen[16], valid[16];
     for (size_t i = 0; i < vectors_per_packet; ++i)
         hn::StoreInterleaved4(light.x.part[i], light.y.part[i], light.z.part[i], through.part[i], FloatTag(),
                               first + 4 * i * lane_step);
-    store(select(places.seen, 1.0f, 0.0f), seen), store(validity_of(places, faces, end, beams), valid);
+    store(select(taps.seen, 1.0f, 0.0f), seen), store(validity_of(taps, faces, end, beams), valid);
     for (size_t i = 0; i < batch.rays.size(); ++i) {
         const float* f = first + 4 * i;
         if (seen[i] > 0)
-            results[i] = {{f[0], f[1], f[2]}, f[3], valid[i], places.count, vec3(0)};
+            results[i] = {{f[0], f[1], f[2]}, f[3], valid[i], taps.count, vec3(0)};
         else
             results[i] = Scatter{.validity = 0};
     }
@@ -199,9 +199,9 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace tyndall {
 HWY_EXPORT(look_up_kernel);
-void look_up_froxels(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
+void look_up_froxels(const FroxelBuffer& froxels, const RayBatch& batch, std::span<Scatter> results,
                      std::span<const FroxelSums> parts, std::span<vec3> of_parts, std::span<vec3> of_beams) {
-    HWY_DYNAMIC_DISPATCH(look_up_kernel)(picture, batch, results, parts, of_parts, of_beams);
+    HWY_DYNAMIC_DISPATCH(look_up_kernel)(froxels, batch, results, parts, of_parts, of_beams);
 }
 }
 #endif

@@ -5,7 +5,7 @@
 #include "modes/froxel/settings.h"
 
 namespace tyndall {
-struct FroxelPicture {
+struct FroxelBuffer {
     FroxelGrid grid;
     FroxelTiles tiles;
     FroxelSums sums;
@@ -17,7 +17,7 @@ struct FroxelPicture {
 
 // Radiance, transmittance and validity of up to 16 rays of the grid's camera. `parts` are further sums over the same
 // froxels: their light goes to `of_parts`, rays × parts; that of the beams to `of_beams`, rays × beams.
-void look_up_froxels(const FroxelPicture& picture, const RayBatch& batch, std::span<Scatter> results,
+void look_up_froxels(const FroxelBuffer& froxels, const RayBatch& batch, std::span<Scatter> results,
                      std::span<const FroxelSums> parts = {}, std::span<vec3> of_parts = {},
                      std::span<vec3> of_beams = {});
 }

@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 // Per ray: planar depths of its ends, length per meter of planar depth (slant), and the tiles around it.
-struct Places {
+struct FroxelTaps {
     Floats start, end, slant;
     Floats tile_slant;                 // weighted mean of the tiles' slants
     Mask16 seen;                       // in front of the grid's camera
@@ -92,32 +92,33 @@ HWY_INLINE Floats value_at(const float* values, const Ints& index) {
 }
 
 // Reduces the weights of tiles that do not see as far as a ray; where none does, all keep their relative weights.
-void distrust_blind(const FroxelTiles& tiles, const Mask16& blind, Places& places) {
+void fade_untrusted(const FroxelTiles& tiles, const Mask16& untrusted, FroxelTaps& taps) {
     constexpr float least = 1e-5f;
     Floats total = 0.0f, kept = 0.0f, weights[16];
-    for (int t = 0; t < places.count; ++t) {
-        const Ints tile = load(places.tiles[t]);
-        const size_t first = static_cast<size_t>(places.tiles[t][0]);
-        const Floats far = places.together ? Floats(tiles.trusted[first]) : gather(tiles.trusted.data(), tile);
-        const Floats distrust = places.together ? Floats(tiles.distrust[first]) : gather(tiles.distrust.data(), tile);
-        const Floats behind = max(places.end - far, 0.0f);
-        const Floats trusted = max(1.0f - behind * distrust, 0.0f);
-        const Floats weight = load(places.weights[t]);
-        kept = fused(weight, trusted, kept);
+    for (int t = 0; t < taps.count; ++t) {
+        const Ints tile = load(taps.tiles[t]);
+        const size_t first = static_cast<size_t>(taps.tiles[t][0]);
+        const Floats far = taps.together ? Floats(tiles.trusted[first]) : gather(tiles.trusted.data(), tile);
+        const Floats trust_falloff =
+            taps.together ? Floats(tiles.trust_falloff[first]) : gather(tiles.trust_falloff.data(), tile);
+        const Floats behind = max(taps.end - far, 0.0f);
+        const Floats trusted = max(1.0f - behind * trust_falloff, 0.0f);
+        const Floats weight = load(taps.weights[t]);
+        kept = fma(weight, trusted, kept);
         weights[t] = weight * max(trusted, least);
         total = total + weights[t];
     }
     const Floats scale = 1.0f / total;
-    for (int t = 0; t < places.count; ++t)
-        store(select(blind, weights[t] * scale, load(places.weights[t])), places.weights[t]);
-    places.kept = select(blind, kept, 1.0f);
+    for (int t = 0; t < taps.count; ++t)
+        store(select(untrusted, weights[t] * scale, load(taps.weights[t])), taps.weights[t]);
+    taps.kept = select(untrusted, kept, 1.0f);
 }
 
 // Pixels of the rays.
 struct Pixels {
     Floats x, y;
 };
-HWY_INLINE Pixels pixels_of(const FroxelPicture& picture, const RayBatch& batch, const Places& places) {
+HWY_INLINE Pixels pixels_of(const FroxelBuffer& froxels, const RayBatch& batch, const FroxelTaps& taps) {
     Pixels at;
     if (batch.rays.size() == 16 && batch.positions.size() == 16) {
         const auto* from = reinterpret_cast<const float*>(batch.positions.data());
@@ -126,21 +127,21 @@ HWY_INLINE Pixels pixels_of(const FroxelPicture& picture, const RayBatch& batch,
         return at;
     }
     alignas(64) float x[16], y[16], start[16], slant[16];
-    store(places.start, start), store(places.slant, slant);
+    store(taps.start, start), store(taps.slant, slant);
     for (size_t i = 0; i < 16; ++i) {
         const size_t ray = std::min(i, batch.rays.size() - 1);
         vec2 pixel;
         if (ray < batch.positions.size())
             pixel = batch.positions[ray];
         else
-            pixel = vec2(project(picture.grid,
-                                 batch.rays[ray].at(std::max(picture.grid.faces.back() - start[i], 1.0f) * slant[i])));
+            pixel = vec2(project(froxels.grid,
+                                 batch.rays[ray].at(std::max(froxels.grid.faces.back() - start[i], 1.0f) * slant[i])));
         x[i] = pixel.x, y[i] = pixel.y;
     }
     return {load(x), load(y)};
 }
 
-void jitter_places(const RayBatch& batch, Floats& x, Floats& y) {
+void jitter_taps(const RayBatch& batch, Floats& x, Floats& y) {
     alignas(64) float at_x[16], at_y[16];
     store(x, at_x), store(y, at_y);
     for (size_t i = 0; i < 16; ++i) {
@@ -158,42 +159,42 @@ Mask16 open_rays(const RayBatch& batch) {
     return load(open) > 0.0f;
 }
 
-void find_tiles(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
-    const FroxelGrid& grid = picture.grid;
-    const Pixels pixels = pixels_of(picture, batch, places);
+void find_tiles(const FroxelBuffer& froxels, const RayBatch& batch, FroxelTaps& taps) {
+    const FroxelGrid& grid = froxels.grid;
+    const Pixels pixels = pixels_of(froxels, batch, taps);
     const float per_tile = 1 / static_cast<float>(grid.tile);
-    Floats at_x = fused(pixels.x, per_tile, 0.5f), at_y = fused(pixels.y, per_tile, 0.5f); // as tile_of()
-    places.seen = places.seen & (abs(at_x + at_y) < infinity);
-    at_x = zero_unless(places.seen, at_x), at_y = zero_unless(places.seen, at_y);
+    Floats at_x = fma(pixels.x, per_tile, 0.5f), at_y = fma(pixels.y, per_tile, 0.5f); // as tile_of()
+    taps.seen = taps.seen & (abs(at_x + at_y) < infinity);
+    at_x = zero_unless(taps.seen, at_x), at_y = zero_unless(taps.seen, at_y);
     const auto whole = [](const Floats& at, int size)
                            HWY_ATTR { return truncate(max(min(at + 0.5f, static_cast<float>(size - 1)), 0.0f)); };
-    places.own = whole(at_y, grid.size.y) * grid.size.x + whole(at_x, grid.size.x);
-    places.nearest = value_at(picture.tiles.nearest.data(), places.own);
-    if (picture.lookup == FroxelLookup::jittered) jitter_places(batch, at_x, at_y);
+    taps.own = whole(at_y, grid.size.y) * grid.size.x + whole(at_x, grid.size.x);
+    taps.nearest = value_at(froxels.tiles.nearest.data(), taps.own);
+    if (froxels.lookup == FroxelLookup::jittered) jitter_taps(batch, at_x, at_y);
 
-    const bool cubic = picture.lookup == FroxelLookup::tricubic;
+    const bool cubic = froxels.lookup == FroxelLookup::tricubic;
     const Axis x = axis_of(at_x, grid.size.x, cubic), y = axis_of(at_y, grid.size.y, cubic);
     const int side = cubic ? 4 : 2;
-    places.kept = 1.0f;
-    places.count = side * side, places.tile_slant = 0.0f;
+    taps.kept = 1.0f;
+    taps.count = side * side, taps.tile_slant = 0.0f;
     for (int j = 0; j < side; ++j)
         for (int k = 0; k < side; ++k) {
             const Ints column = max(min(x.first + Ints(k), grid.size.x - 1), 0);
             const Ints tile = max(min(y.first + Ints(j), grid.size.y - 1), 0) * grid.size.x + column;
-            store(tile, places.tiles[side * j + k]), store(x.weights[k] * y.weights[j], places.weights[side * j + k]);
+            store(tile, taps.tiles[side * j + k]), store(x.weights[k] * y.weights[j], taps.weights[side * j + k]);
         }
     // The minimum around the tile at or before the pixel says whether all tiles see far enough.
     const Ints cell = (y.first + Ints(cubic)) * grid.size.x + (x.first + Ints(cubic));
-    places.together = all_same(cell);
-    const Floats trusted = value_at(picture.tiles.trusted_around.data(), cell);
-    const Mask16 blind = places.end > trusted;
-    if (any(blind)) distrust_blind(picture.tiles, blind, places);
+    taps.together = all_same(cell);
+    const Floats trusted = value_at(froxels.tiles.trusted_around.data(), cell);
+    const Mask16 untrusted = taps.end > trusted;
+    if (any(untrusted)) fade_untrusted(froxels.tiles, untrusted, taps);
     constexpr float most = std::numeric_limits<float>::max();
-    if (!batch.open.empty()) places.end = select(open_rays(batch) & (trusted > most), most, places.end);
-    for (int t = 0; t < places.count; ++t) {
-        const Floats slant = places.together ? Floats(grid.slants[static_cast<size_t>(places.tiles[t][0])])
-                                             : gather(grid.slants.data(), load(places.tiles[t]));
-        places.tile_slant = fused(load(places.weights[t]), slant, places.tile_slant);
+    if (!batch.open.empty()) taps.end = select(open_rays(batch) & (trusted > most), most, taps.end);
+    for (int t = 0; t < taps.count; ++t) {
+        const Floats slant = taps.together ? Floats(grid.slants[static_cast<size_t>(taps.tiles[t][0])])
+                                           : gather(grid.slants.data(), load(taps.tiles[t]));
+        taps.tile_slant = fma(load(taps.weights[t]), slant, taps.tile_slant);
     }
 }
 
@@ -216,27 +217,27 @@ HWY_INLINE bool from_the_eye(const Camera& camera, const RayBatch& batch) {
     return true;
 }
 
-inline void find_places(const FroxelPicture& picture, const RayBatch& batch, Places& places) {
-    const FroxelGrid& grid = picture.grid;
+inline void find_taps(const FroxelBuffer& froxels, const RayBatch& batch, FroxelTaps& taps) {
+    const FroxelGrid& grid = froxels.grid;
     alignas(64) float along[16], start[16] = {}, length[16];
     if (batch.rays.size() == 16 && batch.positions.size() == 16 && from_the_eye(grid.camera, batch)) {
-        const Pixels at = pixels_of(picture, batch, places);
-        const Vec3s step = fused(splat(grid.step_x), at.x, fused(splat(grid.step_y), at.y, splat(grid.step)));
+        const Pixels at = pixels_of(froxels, batch, taps);
+        const Vec3s step = fma(splat(grid.step_x), at.x, fma(splat(grid.step_y), at.y, splat(grid.step)));
         for (size_t i = 0; i < 16; ++i) length[i] = batch.rays[i].t_max;
-        places.slant = sqrt(dot(step, step)), places.seen = Floats(0.0f) < places.slant, places.start = 0.0f;
-        places.end = min(load(length) / places.slant, std::numeric_limits<float>::max());
-        return find_tiles(picture, batch, places);
+        taps.slant = sqrt(dot(step, step)), taps.seen = Floats(0.0f) < taps.slant, taps.start = 0.0f;
+        taps.end = min(load(length) / taps.slant, std::numeric_limits<float>::max());
+        return find_tiles(froxels, batch, taps);
     }
     for (size_t i = 0; i < 16; ++i) {
         const Ray& ray = batch.rays[std::min(i, batch.rays.size() - 1)];
         along[i] = glm::dot(ray.direction, grid.camera.forward);
         start[i] = std::max(planar_depth(grid.camera, ray, 0), 0.0f), length[i] = ray.t_max;
     }
-    places.seen = load(along) > 1e-6f;
-    const Floats forward = select(places.seen, load(along), 1.0f);
-    places.slant = 1.0f / forward, places.start = load(start);
-    places.end = min(fused(load(length), forward, places.start), std::numeric_limits<float>::max());
-    find_tiles(picture, batch, places);
+    taps.seen = load(along) > 1e-6f;
+    const Floats forward = select(taps.seen, load(along), 1.0f);
+    taps.slant = 1.0f / forward, taps.start = load(start);
+    taps.end = min(fma(load(length), forward, taps.start), std::numeric_limits<float>::max());
+    find_tiles(froxels, batch, taps);
 }
 }
 }

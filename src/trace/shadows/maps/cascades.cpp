@@ -13,19 +13,19 @@ constexpr int spare = 5;               // texels of margin, for filters at the e
 constexpr double endless = std::numeric_limits<double>::infinity();
 
 // A rectangle perpendicular to the light, meters.
-struct Across {
+struct Rect {
     double low[2] = {endless, endless}, high[2] = {-endless, -endless};
 
     bool empty() const { return !(low[0] < high[0] && low[1] < high[1]); }
     void grow(const double* at) {
         for (int i = 0; i < 2; ++i) low[i] = std::min(low[i], at[i]), high[i] = std::max(high[i], at[i]);
     }
-    void cut(const Across& other) {
+    void cut(const Rect& other) {
         for (int i = 0; i < 2; ++i) low[i] = std::max(low[i], other.low[i]), high[i] = std::min(high[i], other.high[i]);
     }
 };
-Across all_across() {
-    Across all;
+Rect infinite_rect() {
+    Rect all;
     for (int i = 0; i < 2; ++i) all.low[i] = -endless, all.high[i] = endless;
     return all;
 }
@@ -38,9 +38,9 @@ vec3 corner_of(const Box& box, int i) {
     return {i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z};
 }
 
-Across across(const ShadowMap& map, const Box& box) {
-    if (!is_finite(box.low) || !is_finite(box.high)) return all_across();
-    Across result;
+Rect project(const ShadowMap& map, const Box& box) {
+    if (!is_finite(box.low) || !is_finite(box.high)) return infinite_rect();
+    Rect result;
     for (int i = 0; i < 8; ++i) {
         const dvec3 offset = dvec3(corner_of(box, i)) - dvec3(map.position);
         const double at[2] = {glm::dot(row(map, 0), offset), glm::dot(row(map, 1), offset)};
@@ -50,10 +50,10 @@ Across across(const ShadowMap& map, const Box& box) {
 }
 
 // What the camera sees between two planar depths, the second one possibly infinite.
-Across across(const ShadowMap& map, const View& view, double near, double far) {
+Rect project(const ShadowMap& map, const View& view, double near, double far) {
     const Camera& camera = view.camera;
-    const vec2 low(-past_edge(view)), high = vec2(view.size) - low;
-    Across result;
+    const vec2 low(-edge_margin(view)), high = vec2(view.size) - low;
+    Rect result;
     for (int i = 0; i < 4; ++i) {
         const Ray ray = camera_ray(camera, view.size, {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y});
         const dvec3 d = dvec3(ray.direction) / double(glm::dot(ray.direction, camera.forward));
@@ -88,9 +88,9 @@ Interval<double> depths(const Camera& camera, const Box& box) {
 
 // A picture whose texel sizes come from a fixed series relative to the scene's extent, on a lattice fixed in the world,
 // so that shadow edges do not swim when the camera moves.
-ShadowPicture picture_of(const ShadowMap& map, const Across& region, const Snapshot& snapshot, int resolution) {
+ShadowImage fitted_image(const ShadowMap& map, const Rect& region, const Snapshot& snapshot, int resolution) {
     const double unit = snapshot.extent;
-    ShadowPicture picture;
+    ShadowImage image;
     for (int axis = 0; axis < 2; ++axis) {
         const double length = std::max(region.high[axis] - region.low[axis], 1e-6 * unit) / unit;
         const double texels = resolution - 2 * spare;
@@ -99,11 +99,11 @@ ShadowPicture picture_of(const ShadowMap& map, const Across& region, const Snaps
         const double origin = glm::dot(row(map, axis), dvec3(map.position) - dvec3(snapshot.anchor));
         const double low = std::floor((origin + region.low[axis]) / texel) - spare + 1;
         const double wanted = std::ceil((origin + region.high[axis]) / texel) - low + spare - 1;
-        picture.size[axis] = static_cast<int>(std::clamp<double>(wanted, 2 * spare, resolution));
-        picture.scale[axis] = static_cast<float>(1 / texel);
-        picture.offset[axis] = static_cast<float>(origin / texel - low);
+        image.size[axis] = static_cast<int>(std::clamp<double>(wanted, 2 * spare, resolution));
+        image.scale[axis] = static_cast<float>(1 / texel);
+        image.offset[axis] = static_cast<float>(origin / texel - low);
     }
-    return picture;
+    return image;
 }
 }
 
@@ -114,8 +114,8 @@ void fit_cascades(const View& view, const Snapshot& snapshot, const Box& casters
     for (const Medium& medium : snapshot.media) fog.grow(medium.world_bounds);
     if (fog.empty()) return;
     map.position = casters.center();
-    Across region = across(map, casters);
-    region.cut(across(map, fog));
+    Rect region = project(map, casters);
+    region.cut(project(map, fog));
     const bool bounded = is_finite(fog.low) && is_finite(fog.high);
     Interval<double> range = bounded ? depths(view.camera, fog) : Interval<double>{0, endless};
     range.low = std::max(range.low, 0.0);
@@ -127,23 +127,23 @@ void fit_cascades(const View& view, const Snapshot& snapshot, const Box& casters
     const double end =
         std::min(range.high, std::max(depths(view.camera, scene).high, range.low + 0.1 * snapshot.extent));
     const double start = std::max(range.low, 0.01 * end);
-    std::vector<ShadowPicture> pictures;
+    std::vector<ShadowImage> images;
     for (int i = options.cascades; i >= 1; --i) {
         const double share = static_cast<double>(i) / options.cascades;
         const double split = 0.5 * start * std::pow(end / start, share) + 0.5 * (start + (end - start) * share);
-        Across seen = across(map, view, range.low, i == options.cascades ? range.high : split);
+        Rect seen = project(map, view, range.low, i == options.cascades ? range.high : split);
         seen.cut(region);
         if (seen.empty()) continue;
-        const ShadowPicture picture = picture_of(map, seen, snapshot, options.resolution);
-        const auto density = [](const ShadowPicture& p) { return std::sqrt(double(p.scale.x) * p.scale.y); };
-        if (!pictures.empty() && density(pictures.back()) > worth_it * density(picture)) continue;
-        pictures.push_back(picture);
+        const ShadowImage image = fitted_image(map, seen, snapshot, options.resolution);
+        const auto density = [](const ShadowImage& p) { return std::sqrt(double(p.scale.x) * p.scale.y); };
+        if (!images.empty() && density(images.back()) > worth_it * density(image)) continue;
+        images.push_back(image);
     }
     size_t first = 0;
-    for (size_t i = pictures.size(); i-- > 0;) {
-        pictures[i].first = first;
-        first += static_cast<size_t>(pictures[i].size.x) * static_cast<size_t>(pictures[i].size.y);
-        map.pictures.push_back(pictures[i]);
+    for (size_t i = images.size(); i-- > 0;) {
+        images[i].first = first;
+        first += static_cast<size_t>(images[i].size.x) * static_cast<size_t>(images[i].size.y);
+        map.images.push_back(images[i]);
     }
 }
 }

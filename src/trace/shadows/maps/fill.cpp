@@ -23,8 +23,8 @@ struct Filling {
 };
 
 // The ray through a texel coordinate; w = its t + start.
-Ray texel_ray(const Filling& filling, const ShadowPicture& picture, size_t face, vec2 texel) {
-    const vec2 at = (texel - picture.offset) / picture.scale;
+Ray texel_ray(const Filling& filling, const ShadowImage& image, size_t face, vec2 texel) {
+    const vec2 at = (texel - image.offset) / image.scale;
     const ShadowMap& map = filling.map;
     if (map.projection == LightProjection::parallel)
         return {map.position + filling.map_to_world * vec3(at, filling.start), filling.light.direction};
@@ -51,28 +51,28 @@ float depth_behind_sheets(const Occluders& occluders, Ray ray, float t_min, floa
 }
 
 // Where lookups that read texels of a block can lie on the ray through its middle.
-Interval<float> seen_by_block(const Filling& filling, const ShadowPicture& picture, const Ray& middle) {
+Interval<float> seen_by_block(const Filling& filling, const ShadowImage& image, const Ray& middle) {
     const float radius =
-        (0.5f * block_side + shadow_guard + 0.5f) * std::sqrt(2.0f) / std::min(picture.scale.x, picture.scale.y);
+        (0.5f * block_side + shadow_guard + 0.5f) * std::sqrt(2.0f) / std::min(image.scale.x, image.scale.y);
     const bool parallel = filling.map.projection == LightProjection::parallel;
-    return seen_stretch(filling.seen, middle.origin - filling.seen.anchor, middle.direction, parallel ? radius : 0,
-                        parallel ? 0 : radius);
+    return seen_interval(filling.seen, middle.origin - filling.seen.anchor, middle.direction, parallel ? radius : 0,
+                         parallel ? 0 : radius);
 }
 
-void fill_block(const Filling& filling, const ShadowPicture& picture, size_t face, ivec2 corner) {
+void fill_block(const Filling& filling, const ShadowImage& image, size_t face, ivec2 corner) {
     Ray rays[16];
     int texels[16];
     size_t count = 0;
-    const ivec2 end = glm::min(corner + block_side, picture.size);
-    float* depth = filling.map.depth.data() + picture.first;
-    const Ray middle = texel_ray(filling, picture, face, vec2(corner) + 0.5f * block_side);
-    const Interval<float> seen = seen_by_block(filling, picture, middle);
+    const ivec2 end = glm::min(corner + block_side, image.size);
+    float* depth = filling.map.depth.data() + image.first;
+    const Ray middle = texel_ray(filling, image, face, vec2(corner) + 0.5f * block_side);
+    const Interval<float> seen = seen_by_block(filling, image, middle);
     for (int y = corner.y; y < end.y; ++y)
         for (int x = corner.x; x < end.x; ++x) {
-            const int texel = y * picture.size.x + x;
+            const int texel = y * image.size.x + x;
             depth[texel] = seen.empty() ? unseen_depth : infinity;
             if (seen.empty()) continue;
-            Ray ray = texel_ray(filling, picture, face, vec2(x, y) + 0.5f);
+            Ray ray = texel_ray(filling, image, face, vec2(x, y) + 0.5f);
             if (glm::dot(ray.direction, filling.light.direction) < filling.smallest_cosine) continue;
             ray.t_max = seen.high;
             rays[count] = ray, texels[count++] = texel;
@@ -109,27 +109,27 @@ void fill_shadow_map(const View& view, const Snapshot& snapshot, const Light& li
     } else {
         filling.nearest = std::max(light.radius, shadow_offset(light.position));
         // Filters reach two texels beyond the cone.
-        const float texel = 1 / map.pictures[0].scale.x;
+        const float texel = 1 / map.images[0].scale.x;
         if (has_cone(light)) filling.smallest_cosine = std::cos(std::min(light.outer_cone + 4 * texel, pi));
     }
 
     size_t texels = 0;
     int64_t rows = 0;
-    for (const ShadowPicture& picture : map.pictures) {
-        texels += static_cast<size_t>(picture.size.x) * static_cast<size_t>(picture.size.y);
-        rows += (picture.size.y + block_side - 1) / block_side;
+    for (const ShadowImage& image : map.images) {
+        texels += static_cast<size_t>(image.size.x) * static_cast<size_t>(image.size.y);
+        rows += (image.size.y + block_side - 1) / block_side;
     }
     map.depth.resize(texels);
     parallel_for(rows, [&](int64_t row) {
         size_t face = 0;
         for (;; ++face) {
-            const int64_t of_face = (map.pictures[face].size.y + block_side - 1) / block_side;
+            const int64_t of_face = (map.images[face].size.y + block_side - 1) / block_side;
             if (row < of_face) break;
             row -= of_face;
         }
-        const ShadowPicture& picture = map.pictures[face];
-        for (int x = 0; x < picture.size.x; x += block_side)
-            fill_block(filling, picture, face, {x, static_cast<int>(row) * block_side});
+        const ShadowImage& image = map.images[face];
+        for (int x = 0; x < image.size.x; x += block_side)
+            fill_block(filling, image, face, {x, static_cast<int>(row) * block_side});
     });
     make_blocks(map);
 }

@@ -14,11 +14,11 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
 void lit_shares_kernel(const ShadowMap& map, const float* x, const float* y, const float* z, float* share) {
-    store(lit_share16(map, {load(x), load(y), load(z)}), share);
+    store(lit_fraction16(map, {load(x), load(y), load(z)}), share);
 }
 void texel_sizes_kernel(const ShadowMap& map, const float* x, const float* y, const float* z, float* size) {
-    const TexelPlaces places = texel_places(map, map_coordinates(map, {load(x), load(y), load(z)}));
-    store(zero_unless(places.mapped, places.texel), size);
+    const TexelCoords coords = texel_coords(map, map_coordinates(map, {load(x), load(y), load(z)}));
+    store(zero_unless(coords.mapped, coords.texel), size);
 }
 }
 }
@@ -30,11 +30,11 @@ HWY_EXPORT(lit_shares_kernel);
 HWY_EXPORT(texel_sizes_kernel);
 
 namespace {
-constexpr float widest_picture = 70 * pi / 180; // half angle of a spot with a single picture
+constexpr float widest_cone = 70 * pi / 180; // half angle of a spot with a single picture
 
 // A single picture of a spot's cone, or the six of a cube.
 void fit_tangents(const Light& light, const ShadowMapOptions& options, ShadowMap& map) {
-    const bool cube = shines_around(light) || light.outer_cone > widest_picture;
+    const bool cube = shines_around(light) || light.outer_cone > widest_cone;
     map.projection = cube ? LightProjection::all_around : LightProjection::perspective;
     map.position = light.position;
     float half = 1;
@@ -48,7 +48,7 @@ void fit_tangents(const Light& light, const ShadowMapOptions& options, ShadowMap
     const float scale = static_cast<float>(size - 2 * spare) / (2 * half);
     const size_t texels = static_cast<size_t>(size) * static_cast<size_t>(size);
     for (size_t i = 0; i < (cube ? 6 : 1); ++i)
-        map.pictures.push_back({ivec2(size), i * texels, vec2(scale), vec2(0.5f * static_cast<float>(size))});
+        map.images.push_back({ivec2(size), i * texels, vec2(scale), vec2(0.5f * static_cast<float>(size))});
 }
 }
 
@@ -84,7 +84,7 @@ float texel_size(const ShadowMap& map, vec3 point) {
     return size[0];
 }
 
-void lit_shares(const ShadowMap& map, const float* x, const float* y, const float* z, float* share) {
+void lit_fractions(const ShadowMap& map, const float* x, const float* y, const float* z, float* share) {
     HWY_DYNAMIC_DISPATCH(lit_shares_kernel)(map, x, y, z, share);
 }
 }

@@ -31,7 +31,7 @@ struct ShadowMapOptions {
 };
 
 // One picture. Texel coordinate = coordinate · scale + offset; texel i spans i to i + 1.
-struct ShadowPicture {
+struct ShadowImage {
     ivec2 size{0};
     size_t first = 0; // index of its first texel in ShadowMap::depth; rows of increasing u
     vec2 scale{1}, offset{0};
@@ -48,18 +48,18 @@ struct ShadowMap {
     LightProjection projection = LightProjection::parallel; // sun, spot or point, as above
     mat3 world_to_map{1};                                   // rotation to u, v, w, after subtracting `position`
     vec3 position{0};                                       // the light; for a sun, a point amid the surfaces
-    std::vector<ShadowPicture> pictures;
+    std::vector<ShadowImage> images;
     std::vector<float> depth;       // w of the nearest surface; infinite if none, unseen_depth where no lookup falls
     std::vector<DepthRange> blocks; // of each picture: blocks of 4×4 texels, of 8×8, and so on up to a single one
     int pcf = 1;
     float bias = 0;
 
-    bool empty() const { return pictures.empty(); } // nothing casts shadows: all is lit
+    bool empty() const { return images.empty(); } // nothing casts shadows: all is lit
 };
 
 // Serialized to cache files in this order.
 template<class Visit> void fields(ShadowMap& map, Visit& visit) {
-    visit(map.projection), visit(map.world_to_map), visit(map.position), visit(map.pictures);
+    visit(map.projection), visit(map.world_to_map), visit(map.position), visit(map.images);
     visit(map.depth), visit(map.blocks), visit(map.pcf), visit(map.bias);
 }
 
@@ -95,7 +95,7 @@ Lit lit_in_box(const ShadowMap& map, vec3 low, vec3 high);
 // The longer side of a texel at a point, meters, in the finest picture there; 0 if there is none.
 float texel_size(const ShadowMap& map, vec3 point);
 
-// Fraction of the light that reaches 16 points (x,y,z of 16 each). Kernels use lit_share16() of
+// Fraction of the light that reaches 16 points (x,y,z of 16 each). Kernels use lit_fraction16() of
 // trace/shadows/maps/shadow_map_simd.h.
-void lit_shares(const ShadowMap& map, const float* x, const float* y, const float* z, float* share);
+void lit_fractions(const ShadowMap& map, const float* x, const float* y, const float* z, float* share);
 }

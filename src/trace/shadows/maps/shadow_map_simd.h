@@ -20,43 +20,43 @@ HWY_INLINE Ints chosen(const Mask16& where, const Ints& a, const Ints& b) {
 }
 
 // Positions of points in the pictures.
-struct TexelPlaces {
+struct TexelCoords {
     Floats u, v, w;  // texel coordinates; depth along the light
     Floats texel;    // side of a texel, meters
     Ints first, row; // of the picture: index of its first texel, texels per row
     Mask16 mapped;   // lanes that lie in a picture
 };
 
-HWY_INLINE Mask16 in_picture(const Floats& u, const Floats& v, ivec2 size) {
+HWY_INLINE Mask16 in_image(const Floats& u, const Floats& v, ivec2 size) {
     return (u >= shadow_guard) & (u <= static_cast<float>(size.x) - shadow_guard) & (v >= shadow_guard) &
            (v <= static_cast<float>(size.y) - shadow_guard);
 }
 
 // The finest cascade that contains each point. Neighboring points mostly share one.
-HWY_INLINE void place_in_cascades(const ShadowMap& map, const Vec3s& q, TexelPlaces& places) {
-    places.w = q.z, places.mapped = q.x < q.x;
-    for (const ShadowPicture& picture : map.pictures) {
-        const Floats u = fused(q.x, picture.scale.x, picture.offset.x);
-        const Floats v = fused(q.y, picture.scale.y, picture.offset.y);
-        const Mask16 inside = in_picture(u, v, picture.size);
-        const float texel = 1 / std::min(picture.scale.x, picture.scale.y);
-        const Ints first = static_cast<int32_t>(picture.first), row = picture.size.x;
-        if (&picture == map.pictures.data()) {
-            places.u = u, places.v = v, places.texel = texel, places.first = first, places.row = row;
+HWY_INLINE void cascade_coords(const ShadowMap& map, const Vec3s& q, TexelCoords& coords) {
+    coords.w = q.z, coords.mapped = q.x < q.x;
+    for (const ShadowImage& image : map.images) {
+        const Floats u = fma(q.x, image.scale.x, image.offset.x);
+        const Floats v = fma(q.y, image.scale.y, image.offset.y);
+        const Mask16 inside = in_image(u, v, image.size);
+        const float texel = 1 / std::min(image.scale.x, image.scale.y);
+        const Ints first = static_cast<int32_t>(image.first), row = image.size.x;
+        if (&image == map.images.data()) {
+            coords.u = u, coords.v = v, coords.texel = texel, coords.first = first, coords.row = row;
         } else {
-            const Mask16 here = inside & !places.mapped;
-            places.u = select(here, u, places.u), places.v = select(here, v, places.v);
-            places.texel = select(here, texel, places.texel);
-            places.first = chosen(here, first, places.first), places.row = chosen(here, row, places.row);
+            const Mask16 here = inside & !coords.mapped;
+            coords.u = select(here, u, coords.u), coords.v = select(here, v, coords.v);
+            coords.texel = select(here, texel, coords.texel);
+            coords.first = chosen(here, first, coords.first), coords.row = chosen(here, row, coords.row);
         }
-        places.mapped = places.mapped | inside;
-        if (!any(!places.mapped)) break;
+        coords.mapped = coords.mapped | inside;
+        if (!any(!coords.mapped)) break;
     }
 }
 
 // The face of a cube, or the one picture of a spot. Faces look along their axes; u and v are the next two in turn.
-HWY_INLINE void place_in_tangents(const ShadowMap& map, const Vec3s& q, TexelPlaces& places) {
-    const ShadowPicture& picture = map.pictures[0];
+HWY_INLINE void tangent_coords(const ShadowMap& map, const Vec3s& q, TexelCoords& coords) {
+    const ShadowImage& image = map.images[0];
     Floats a = q.x, b = q.y, depth = q.z, face = 0.0f;
     if (map.projection == LightProjection::all_around) {
         const Floats x = abs(q.x), y = abs(q.y), z = abs(q.z);
@@ -67,13 +67,13 @@ HWY_INLINE void place_in_tangents(const ShadowMap& map, const Vec3s& q, TexelPla
         depth = abs(depth);
     }
     const Floats inverse = 1.0f / max(depth, 1e-20f);
-    places.u = fused(a * inverse, picture.scale.x, picture.offset.x);
-    places.v = fused(b * inverse, picture.scale.y, picture.offset.y);
-    places.w = sqrt(dot(q, q));
-    places.texel = depth * (1 / picture.scale.x);
-    places.row = picture.size.x;
-    places.first = truncate(face) * (picture.size.x * picture.size.y);
-    places.mapped = (depth > 0.0f) & in_picture(places.u, places.v, picture.size);
+    coords.u = fma(a * inverse, image.scale.x, image.offset.x);
+    coords.v = fma(b * inverse, image.scale.y, image.offset.y);
+    coords.w = sqrt(dot(q, q));
+    coords.texel = depth * (1 / image.scale.x);
+    coords.row = image.size.x;
+    coords.first = truncate(face) * (image.size.x * image.size.y);
+    coords.mapped = (depth > 0.0f) & in_image(coords.u, coords.v, image.size);
 }
 
 // Points in the map's own coordinates: the light, or the sun's anchor, is the origin. Linear along rays.
@@ -85,53 +85,53 @@ HWY_INLINE Vec3s map_coordinates(const ShadowMap& map, const Vec3s& point) {
     return turned_to_map(map, point - splat(map.position));
 }
 
-HWY_INLINE TexelPlaces texel_places(const ShadowMap& map, const Vec3s& q) {
-    TexelPlaces places;
-    map.projection == LightProjection::parallel ? place_in_cascades(map, q, places) : place_in_tangents(map, q, places);
-    places.u = select(places.mapped, places.u, shadow_guard), places.v = select(places.mapped, places.v, shadow_guard);
-    return places;
+HWY_INLINE TexelCoords texel_coords(const ShadowMap& map, const Vec3s& q) {
+    TexelCoords coords;
+    map.projection == LightProjection::parallel ? cascade_coords(map, q, coords) : tangent_coords(map, q, coords);
+    coords.u = select(coords.mapped, coords.u, shadow_guard), coords.v = select(coords.mapped, coords.v, shadow_guard);
+    return coords;
 }
 
 // Fraction of the light that reaches 16 points given in map coordinates, by percentage-closer filtering (Reeves et al.
 // 1987): depths are compared first, then averaged.
-HWY_INLINE Floats lit_share_at(const ShadowMap& map, const Vec3s& q) {
+HWY_INLINE Floats lit_fraction_at(const ShadowMap& map, const Vec3s& q) {
     if (map.empty()) return 1.0f;
-    const TexelPlaces places = texel_places(map, q);
+    const TexelCoords coords = texel_coords(map, q);
     const Floats outside = map.projection == LightProjection::parallel ? 1.0f : 0.0f;
-    if (!any(places.mapped)) return outside;
+    if (!any(coords.mapped)) return outside;
 
     // Moves surfaces back by a millionth, to cover float rounding.
-    const Floats depth = fused(places.texel, -map.bias, places.w - abs(places.w) * 1e-6f);
+    const Floats depth = fma(coords.texel, -map.bias, coords.w - abs(coords.w) * 1e-6f);
     const float* stored = map.depth.data();
     const auto lit = [&](const Ints& texel) HWY_ATTR { return select(gather(stored, texel) >= depth, 1.0f, 0.0f); };
     if (map.pcf == 0)
-        return select(places.mapped, lit(places.first + truncate(places.v) * places.row + truncate(places.u)), outside);
+        return select(coords.mapped, lit(coords.first + truncate(coords.v) * coords.row + truncate(coords.u)), outside);
 
-    const Floats u = places.u - 0.5f, v = places.v - 0.5f;
+    const Floats u = coords.u - 0.5f, v = coords.v - 0.5f;
     const Ints i = truncate(u), j = truncate(v);
     const Floats right = u - to_floats(i), down = v - to_floats(j);
-    const Ints corner = places.first + j * places.row + i;
+    const Ints corner = coords.first + j * coords.row + i;
     const auto blend = [](const Floats& a, const Floats& b, const Floats& weight)
-                           HWY_ATTR { return fused(b - a, weight, a); };
+                           HWY_ATTR { return fma(b - a, weight, a); };
     if (map.pcf == 1) {
         const auto lit_pair = [&](const Ints& texel) HWY_ATTR {
             Floats first, second;
             gather_pairs(stored, texel, first, second);
             return blend(select(first >= depth, 1.0f, 0.0f), select(second >= depth, 1.0f, 0.0f), right);
         };
-        return select(places.mapped, blend(lit_pair(corner), lit_pair(corner + places.row), down), outside);
+        return select(coords.mapped, blend(lit_pair(corner), lit_pair(corner + coords.row), down), outside);
     }
     Floats sum = 0.0f;
     for (int y = -1; y <= 2; ++y) {
-        const Ints row = corner + places.row * y;
+        const Ints row = corner + coords.row * y;
         const Floats across = blend(lit(row + (-1)), lit(row + 2), right) + lit(row) + lit(row + 1);
-        sum = fused(across, y == -1 ? 1.0f - down : y == 2 ? down : Floats(1.0f), sum);
+        sum = fma(across, y == -1 ? 1.0f - down : y == 2 ? down : Floats(1.0f), sum);
     }
-    return select(places.mapped, sum * (1.0f / 9), outside);
+    return select(coords.mapped, sum * (1.0f / 9), outside);
 }
 
-HWY_INLINE Floats lit_share16(const ShadowMap& map, const Vec3s& point) {
-    return map.empty() ? Floats(1.0f) : lit_share_at(map, map_coordinates(map, point));
+HWY_INLINE Floats lit_fraction16(const ShadowMap& map, const Vec3s& point) {
+    return map.empty() ? Floats(1.0f) : lit_fraction_at(map, map_coordinates(map, point));
 }
 }
 HWY_AFTER_NAMESPACE();

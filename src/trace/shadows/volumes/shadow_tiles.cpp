@@ -153,7 +153,7 @@ struct Collector {
 
 namespace {
 // The tiles of each row that a beam covers: those of the surface of a pyramid around it, which extends to infinity.
-std::vector<Interval<int>> tiles_in_reach(const Projection& projection, const std::optional<ShadowReach>& reach) {
+std::vector<Interval<int>> tiles_in_cone(const Projection& projection, const std::optional<ShadowCone>& reach) {
     const std::vector<Interval<int>> all(static_cast<size_t>(projection.tiles.y), {0, projection.tiles.x - 1});
     if (!reach) return all;
     constexpr int edges = 8;
@@ -181,7 +181,7 @@ std::vector<Interval<int>> tiles_in_reach(const Projection& projection, const st
 void fill_tiles(const ShadowVolumes& volumes, const Camera& camera, ivec2 size, float margin, ShadowView& view) {
     const Projection projection = make_projection(camera, size, margin);
     const ShadowMesh& mesh = *volumes.mesh;
-    const std::vector<Interval<int>> wanted = tiles_in_reach(projection, volumes.reach);
+    const std::vector<Interval<int>> wanted = tiles_in_cone(projection, volumes.reach);
     Collector sides{projection, wanted, {}, {}}, caps{projection, wanted, {}, {}};
     for (uint32_t i = 0; i < view.sides.size(); ++i) {
         const ShadowMesh::Edge edge = mesh.edges[view.sides[i].edge];

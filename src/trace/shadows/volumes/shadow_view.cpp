@@ -5,18 +5,18 @@
 
 namespace tyndall {
 namespace {
-// Mesh corners and the light, relative to `place`.
+// Mesh corners and the light, relative to `anchor`.
 struct Placed {
     const ShadowVolumes& volumes;
-    dvec3 place;
+    dvec3 anchor;
     LightPoint light;
 
-    dvec3 corner(uint32_t i) const { return volumes.mesh->corners[i] - place; }
+    dvec3 corner(uint32_t i) const { return volumes.mesh->corners[i] - anchor; }
 };
 
-Placed placed_at(const ShadowVolumes& volumes, dvec3 place) {
-    Placed result{volumes, place, volumes.light};
-    if (!result.light.far) result.light.at -= place, result.light.center -= place;
+Placed placed_at(const ShadowVolumes& volumes, dvec3 anchor) {
+    Placed result{volumes, anchor, volumes.light};
+    if (!result.light.far) result.light.at -= anchor, result.light.center -= anchor;
     return result;
 }
 
@@ -91,7 +91,7 @@ void set_cap(const Placed& placed, const ShadowVolumes::Cap& from, const ShadowV
 ShadowView make_view(const Placed& placed, const dvec3* direction) {
     const ShadowMesh& mesh = *placed.volumes.mesh;
     ShadowView view;
-    view.light = placed.light, view.place = placed.place;
+    view.light = placed.light, view.anchor = placed.anchor;
     if (direction) view.parallel = true, view.forward = *direction;
     view.corners.resize(mesh.corners.size()), view.edges.resize(mesh.edges.size());
     for (uint32_t i = 0; i < mesh.corners.size(); ++i) view.corners[i] = corner_product(view, placed.corner(i));
@@ -123,8 +123,8 @@ ShadowView view_from(const ShadowVolumes& volumes, dvec3 point) {
     return make_view(placed_at(volumes, point + step), nullptr);
 }
 
-ShadowView view_along(const ShadowVolumes& volumes, dvec3 place, dvec3 direction) {
-    const Placed placed = placed_at(volumes, place);
+ShadowView view_along(const ShadowVolumes& volumes, dvec3 anchor, dvec3 direction) {
+    const Placed placed = placed_at(volumes, anchor);
     const dvec3 unit = glm::normalize(direction);
     const dvec3 step = clear_of_sides(
         [&](dvec3 by) {
@@ -156,7 +156,7 @@ int tile_of(const ShadowView& view, std::span<const vec2> positions, float margi
 }
 
 void place_ray(const ShadowView& view, const Ray& ray, int lane, ShadowViewRays& rays) {
-    const dvec3 origin = dvec3(ray.origin) - view.place, direction(ray.direction);
+    const dvec3 origin = dvec3(ray.origin) - view.anchor, direction(ray.direction);
     const double along = glm::dot(origin, direction) / glm::dot(direction, direction);
     dvec3 p = view.parallel ? origin - along * direction : direction;
     // The plane through ray and light must not be degenerate.

@@ -14,7 +14,7 @@
 #include "volume/bricks/brick_walk.h"
 
 namespace tyndall {
-// x·p.x + y·p.y + z·p.z + w; p is a ray's direction or, if rays are parallel, where it crosses the plane of `place`.
+// x·p.x + y·p.y + z·p.z + w; p is a ray's direction or, if rays are parallel, where it crosses the plane of `anchor`.
 using RayProduct = glm::dvec4;
 
 inline constexpr int shadow_tile_side = 8; // pixels
@@ -45,11 +45,11 @@ struct ShadowView {
         bool left[3];
         bool dark = false;     // the eye is in its volume
         bool opposite = false; // so is the point opposite the eye, beyond the light: rays end in it at infinity
-        dvec3 normal{0};       // the plane normal·x = height, x from `place`
+        dvec3 normal{0};       // the plane normal·x = height, x from `anchor`
         double height = 0;
     };
-    LightPoint light; // relative to `place`
-    dvec3 place{0}, forward{0, 0, -1};
+    LightPoint light; // relative to `anchor`
+    dvec3 anchor{0}, forward{0, 0, -1};
     bool parallel = false;
     int dark = 0; // volumes the eye is in
     std::vector<RayProduct> corners;
@@ -62,7 +62,7 @@ struct ShadowView {
 
 // Views for rays from one point, and for parallel rays with any origins.
 ShadowView view_from(const ShadowVolumes& volumes, dvec3 point);
-ShadowView view_along(const ShadowVolumes& volumes, dvec3 place, dvec3 direction);
+ShadowView view_along(const ShadowVolumes& volumes, dvec3 anchor, dvec3 direction);
 
 // For a camera's rays, which may deviate by `margin` pixels from their pixel; faces are binned.
 ShadowView view_from(const ShadowVolumes& volumes, const Camera& camera, ivec2 size, float margin);
@@ -85,7 +85,7 @@ int tile_of(const ShadowView& view, std::span<const vec2> positions, float margi
 // Up to 16 rays of a view.
 struct ShadowViewRays {
     alignas(64) double p[3][16] = {};  // see RayProduct
-    alignas(64) double start[16] = {}; // t of its origin: from the eye or, if rays are parallel, the plane of `place`
+    alignas(64) double start[16] = {}; // t of its origin: from the eye or, if rays are parallel, the plane of `anchor`
     alignas(64) double end[16] = {};   // t up to which crossings are found, measured like `start`
     uint32_t active = 0;               // bits
     int tile = -1;                     // that all of them lie in; -1 = unknown

@@ -12,14 +12,14 @@ bool in_ball(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, const
 }
 }
 
-std::optional<ShadowReach> shadow_reach(const Light& light) {
+std::optional<ShadowCone> shadow_cone(const Light& light) {
     constexpr float widest = 80 * pi / 180; // wider cones exclude little
     if (!has_cone(light) || light.area || light.outer_cone > widest) return {};
-    return ShadowReach{dvec3(light.position), glm::normalize(dvec3(light.direction)), double{light.outer_cone}};
+    return ShadowCone{dvec3(light.position), glm::normalize(dvec3(light.direction)), double{light.outer_cone}};
 }
 
 ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const LightPoint& light,
-                                  std::optional<ShadowReach> reach) {
+                                  std::optional<ShadowCone> reach) {
     ShadowVolumes result{std::move(mesh), light, reach, {}, {}};
     const ShadowMesh& m = *result.mesh;
     std::vector<int> volumes(m.edges.size(), 0);

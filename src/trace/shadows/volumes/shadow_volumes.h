@@ -15,11 +15,11 @@ namespace tyndall {
 struct Light;
 
 // The beam of a spot: shadows outside of it are never needed.
-struct ShadowReach {
+struct ShadowCone {
     dvec3 apex{0}, axis{0, 0, -1}; // unit
     double half_angle = 0;         // of its cone, below π/2
 };
-std::optional<ShadowReach> shadow_reach(const Light& light); // none = everywhere
+std::optional<ShadowCone> shadow_cone(const Light& light); // none = everywhere
 
 struct ShadowVolumes {
     struct Cap {
@@ -32,14 +32,14 @@ struct ShadowVolumes {
     };
     std::shared_ptr<const ShadowMesh> mesh;
     LightPoint light;
-    std::optional<ShadowReach> reach;
+    std::optional<ShadowCone> reach;
     std::vector<Cap> caps;
     std::vector<Side> sides; // without those of 0 volumes
 };
 
 // Triangles seen edge-on from the light, and those inside its sphere, cast none.
 ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const LightPoint& light,
-                                  std::optional<ShadowReach> reach = {});
+                                  std::optional<ShadowCone> reach = {});
 
 // From a corner toward the light, of any length.
 inline dvec3 towards(const LightPoint& light, dvec3 corner) { return light.far ? light.at : light.at - corner; }

@@ -51,7 +51,7 @@ struct Street {
 void lit_shares_at(const ShadowMap& map, const std::array<vec3, 16>& points, float* share) {
     alignas(64) float x[16], y[16], z[16];
     for (size_t i = 0; i < 16; ++i) x[i] = points[i].x, y[i] = points[i].y, z[i] = points[i].z;
-    lit_shares(map, x, y, z, share);
+    lit_fractions(map, x, y, z, share);
 }
 
 TEST(ShadowBlocks, NoLookUpContradictsABox) {

@@ -49,13 +49,13 @@ struct Stage {
 float share_at(const ShadowMap& map, vec3 point) {
     alignas(64) float x[16], y[16], z[16], share[16];
     std::fill_n(x, 16, point.x), std::fill_n(y, 16, point.y), std::fill_n(z, 16, point.z);
-    lit_shares(map, x, y, z, share);
+    lit_fractions(map, x, y, z, share);
     return share[0];
 }
 
 // The depth stored at texel centres, for the whole first picture.
-template<class Visit> void visit_texels(const ShadowMap& map, size_t picture, const Visit& visit) {
-    const ShadowPicture& p = map.pictures[picture];
+template<class Visit> void visit_texels(const ShadowMap& map, size_t image, const Visit& visit) {
+    const ShadowImage& p = map.images[image];
     for (int y = 0; y < p.size.y; ++y)
         for (int x = 0; x < p.size.x; ++x)
             visit((vec2(x, y) + 0.5f - p.offset) / p.scale, map.depth[p.first + static_cast<size_t>(y * p.size.x + x)]);
@@ -86,7 +86,7 @@ TEST(ShadowMap, CubeStoresTheDistanceToTheWallsOfARoom) {
     const Stage stage({box_of(room.low, room.high)});
     const vec3 p(0.5f, 0.2f, -0.7f);
     const ShadowMap map = stage.map(light_of(LightKind::point, p, {0, -1, 0}));
-    ASSERT_EQ(map.pictures.size(), 6u);
+    ASSERT_EQ(map.images.size(), 6u);
     for (uint32_t i = 0; i < 4000; ++i) {
         const vec3 d = random_direction(i, 3);
         const float wall = clip(room, p, d, {0, infinity}).high;
@@ -161,17 +161,17 @@ TEST(ShadowMap, FiltersBlendAStraightEdge) {
     const Light light = light_of(LightKind::sun, vec3(0), {0, -1, 0});
     for (const int pcf : {0, 1, 2}) {
         const ShadowMap map = stage.map(light, {64, 1, pcf, 0});
-        const ShadowPicture& picture = map.pictures[0];
+        const ShadowImage& image = map.images[0];
         const vec3 u(map.world_to_map[0][0], map.world_to_map[1][0], map.world_to_map[2][0]);
         ASSERT_NEAR(std::abs(u.x), 1, 1e-6f);
         // Texel number of the border between the last lit and the first dark texel.
-        const float edge = -dot(u, map.position) * picture.scale.x + picture.offset.x;
+        const float edge = -dot(u, map.position) * image.scale.x + image.offset.x;
         const float border = std::round(edge);
         const float sign = u.x > 0 ? 1.0f : -1.0f; // towards the dark
         const float width = pcf == 0 ? 0.0f : pcf == 1 ? 1.0f : 3.0f;
         for (const float off : {-2.2f, -1.4f, -0.9f, -0.45f, -0.2f, 0.1f, 0.3f, 0.48f, 0.8f, 1.3f, 2.1f}) {
             const float texel = border + sign * off;
-            const vec3 point = map.position + u * ((texel - picture.offset.x) / picture.scale.x);
+            const vec3 point = map.position + u * ((texel - image.offset.x) / image.scale.x);
             const float expected = pcf == 0 ? (off < 0 ? 1.0f : 0.0f) : std::clamp(0.5f - off / width, 0.0f, 1.0f);
             EXPECT_NEAR(share_at(map, {point.x, -1, 0}), expected, 1e-3f) << pcf << " " << off;
         }
@@ -212,7 +212,7 @@ TEST(ShadowMap, CascadesGetCoarserAndCoverTheView) {
     const Stage stage = street();
     const Light light = light_of(LightKind::sun, vec3(0), {-1, -0.6f, -0.2f});
     const ShadowMap map = stage.map(light, {512, 4, 1, 0});
-    ASSERT_GE(map.pictures.size(), 3u);
+    ASSERT_GE(map.images.size(), 3u);
     const float near = texel_size(map, {0, 1, 6}), far = texel_size(map, {0, 1, -190});
     EXPECT_GT(near, 0);
     EXPECT_LT(near, 0.5f * far);
@@ -260,11 +260,11 @@ TEST(ShadowMap, TexelsStayWhereTheyAreWhenTheCameraMoves) {
     const ShadowMap before = stage.map(light, {256, 2, 0, 0});
     stage.view.camera.position += vec3(0.01f, 0.005f, -0.02f);
     const ShadowMap after = stage.map(light, {256, 2, 0, 0});
-    ASSERT_EQ(before.pictures.size(), after.pictures.size());
-    for (size_t i = 0; i < before.pictures.size(); ++i)
+    ASSERT_EQ(before.images.size(), after.images.size());
+    for (size_t i = 0; i < before.images.size(); ++i)
         for (int axis = 0; axis < 2; ++axis) {
-            ASSERT_EQ(before.pictures[i].scale[axis], after.pictures[i].scale[axis]);
-            const float moved = after.pictures[i].offset[axis] - before.pictures[i].offset[axis];
+            ASSERT_EQ(before.images[i].scale[axis], after.images[i].scale[axis]);
+            const float moved = after.images[i].offset[axis] - before.images[i].offset[axis];
             EXPECT_NEAR(moved, std::round(moved), 1e-3f);
         }
 }

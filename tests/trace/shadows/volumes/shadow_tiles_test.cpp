@@ -51,7 +51,7 @@ TEST(ShadowTiles, OfABeamAreThoseItIsSeenIn) {
             spot.outer_cone = half_angle;
             const LightPoint point = center_of(spot);
             const ShadowView all = view_from(make_shadow_volumes(mesh, point), camera, size, 0.5f);
-            const ShadowView beam = view_from(make_shadow_volumes(mesh, point, shadow_reach(spot)), camera, size, 0.5f);
+            const ShadowView beam = view_from(make_shadow_volumes(mesh, point, shadow_cone(spot)), camera, size, 0.5f);
             EXPECT_LE(beam.side_tiles.faces.size(), all.side_tiles.faces.size());
             int inside = 0;
             for (int i = 0; i < 3000; ++i) {
@@ -67,13 +67,13 @@ TEST(ShadowTiles, OfABeamAreThoseItIsSeenIn) {
             EXPECT_GT(inside, 10);
         }
     spot.outer_cone = 0.05f;
-    const auto faces = [&](std::optional<ShadowReach> reach) {
+    const auto faces = [&](std::optional<ShadowCone> reach) {
         return view_from(make_shadow_volumes(mesh, center_of(spot), reach), cameras[0], size, 0.5f)
             .side_tiles.faces.size();
     };
-    EXPECT_LT(5 * faces(shadow_reach(spot)), faces({}));
+    EXPECT_LT(5 * faces(shadow_cone(spot)), faces({}));
     spot.kind = LightKind::point;
-    EXPECT_FALSE(shadow_reach(spot));
+    EXPECT_FALSE(shadow_cone(spot));
 }
 }
 }

@@ -32,7 +32,7 @@ std::string nano_authored(const std::vector<AuthoredGrid>& specs, NanoPacking pa
     std::vector<nanovdb::GridHandle<>> handles;
     for (const openvdb::GridBase::Ptr& grid : *grids) handles.push_back(converted(grid, store));
     using enum nanovdb::io::Codec;
-    const Scratch scratch;
+    const TempFolder scratch;
     const std::string file = scratch.file("out.nvdb");
     nanovdb::io::writeGrids<nanovdb::HostBuffer, std::vector>(file, handles,
                                                               packing == NanoPacking::zip     ? ZIP

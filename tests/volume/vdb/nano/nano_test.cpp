@@ -16,7 +16,7 @@ using namespace testing;
 using ::testing::HasSubstr;
 
 SparseVolume read(const std::string& bytes, const std::string& grid = "") {
-    const Scratch scratch;
+    const TempFolder scratch;
     return read_vdb(scratch.put("in.nvdb", bytes), grid);
 }
 
@@ -87,7 +87,7 @@ TEST(Nano, SeveralGridsAndVectors) {
     color.name = "Cd", color.type = "vec3s", color.voxels = {},
     color.colors = {{ivec3(1, 2, 3), vec3(0.1f, 0.2f, 0.3f)}};
     flags.name = "flags", flags.type = "int32", flags.voxels = {{ivec3(1), 2.0f}};
-    const Scratch scratch;
+    const TempFolder scratch;
     const auto file = scratch.put("in.nvdb", nano_authored({density, color, flags}, NanoPacking::zip));
     const VdbInfo info = vdb_info(file);
     ASSERT_EQ(info.grids.size(), 3u); // by name
@@ -102,7 +102,7 @@ TEST(Nano, SeveralGridsAndVectors) {
     ASSERT_EQ(read.channels.size(), 3u);
     for (int c = 0; c < 3; ++c)
         EXPECT_EQ(value_at(read.channels[static_cast<size_t>(c)], ivec3(1, 2, 3)), vec3(0.1f, 0.2f, 0.3f)[c]);
-    EXPECT_EQ(value_at(read.there, ivec3(1, 2, 3)), 1);
+    EXPECT_EQ(value_at(read.coverage, ivec3(1, 2, 3)), 1);
 }
 
 TEST(Nano, LevelSetsNeedAWidth) {
