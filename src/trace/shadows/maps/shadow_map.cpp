@@ -30,7 +30,7 @@ HWY_EXPORT(lit_shares_kernel);
 HWY_EXPORT(texel_sizes_kernel);
 
 namespace {
-constexpr float widest_cone = 70 * pi / 180; // half angle of a spot with a single picture
+constexpr float widest_cone = 70 * pi / 180; // half angle of a spot with a single image
 
 // A single picture of a spot's cone, or the six of a cube.
 void fit_tangents(const Light& light, const ShadowMapOptions& options, ShadowMap& map) {
