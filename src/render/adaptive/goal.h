@@ -22,7 +22,7 @@ inline constexpr uint32_t max_checks = 3;
 // A finished image to check, or a pilot image of one still to be rendered.
 struct CheckedImage {
     const Layers& layers;    // show where errors are likely
-    const Noise& noise;      // of the image
+    Noise noise;             // of the image
     double samples = 0;      // per pixel, that give that noise
     double done = 0;         // samples per pixel so far
     bool may_restart = true; // whether a finer candidate may start over
