@@ -48,13 +48,14 @@ struct Rendering {
     const Mode& mode;
     const Snapshot& snapshot;
     const FrameOptions& options;
-    Settings settings;
+    const Settings& requested;
+    Settings settings;                        // of the candidate
     std::shared_ptr<const Prepared> prepared; // null = each round prepares itself
 };
 
 // Error of motion blur from the shutter's moments, if any; reduces goal.error to what that leaves.
 std::optional<Noise> measure_moments(TargetRounds& rounds, Rendering& rendering) {
-    const auto& [mode, snapshot, options, settings, prepared] = rendering;
+    const auto& [mode, snapshot, options, requested, settings, prepared] = rendering;
     if (!has_moments(rounds.view, snapshot)) return {};
     if (!prepared)
         rendering.prepared =
@@ -106,20 +107,27 @@ void make_forecast(double more, TargetRounds& rounds, const FrameOptions& option
     if (options.forecast && !as_before) options.forecast(seconds);
 }
 
+// The image that the rounds so far add up to.
+struct ImageSoFar {
+    Layers layers;
+    FrameStats& stats;
+    int rounds = 0; // across restarts: each has random numbers of its own
+};
+
 // Renders rounds until the noise meets the goal or time is up, at most `most` of them; returns the work of the next
-// one, 0 if none is to follow. `round` is counted across restarts.
-double render_rounds(TargetRounds& rounds, const Rendering& rendering, double work, int most, Layers& result,
-                     FrameStats& stats, int& round) {
+// one, 0 if none is to follow.
+double render_rounds(TargetRounds& rounds, const Rendering& rendering, double work, int most, ImageSoFar& image) {
+    FrameStats& stats = image.stats;
     const double pixels = pixel_count(rounds.view);
     const auto& progress = rendering.options.progress;
     double begun = std::min(1.0, rounds.done / rounds.expected), rays = stats.samples * pixels; // of rounds that count
     if (rounds.done == 0) rays = 0;
     for (int rendered = 0; work > 0 && rendered < most; ++rendered) {
         std::optional<AllottedPart> part;
-        if (rounds.done == 0) rounds.sequence = round;
+        if (rounds.done == 0) rounds.sequence = image.rounds;
         if (rounds.allotment)
             part = allotted_part(*rounds.allotment, rounds.done, rounds.done + work, rounds.unit(), rounds.continues());
-        const View view = rounds.round_view(work, round, part ? &*part : nullptr);
+        const View view = rounds.round_view(work, image.rounds, part ? &*part : nullptr);
         const double reached = std::max(begun, std::min(1.0, (rounds.done + work) / rounds.expected));
         FrameOptions options = rendering.options;
         options.prepared = rendering.prepared;
@@ -130,20 +138,21 @@ double render_rounds(TargetRounds& rounds, const Rendering& rendering, double wo
         Layers layers =
             render_frame(rendering.mode, view, rendering.snapshot, rendering.settings, options, round_stats);
         rounds.work_seconds = (rounds.goal.clock() - start) / work;
-        rounds.freedom += view.batches - 1, begun = reached, ++round;
+        rounds.freedom += view.batches - 1, begun = reached, ++image.rounds;
         if (rounds.done == 0)
-            result = std::move(layers);
+            image.layers = std::move(layers);
         else if (part)
-            blend_layers(result, layers, part->shares);
+            blend_layers(image.layers, layers, part->shares);
         else
-            blend_layers(result, layers, static_cast<float>(work / (rounds.done + work)));
+            blend_layers(image.layers, layers, static_cast<float>(work / (rounds.done + work)));
         rounds.done += work, rays += static_cast<double>(round_stats.camera_rays);
         stats.add(round_stats);
         stats.samples = static_cast<int>(std::lround(rays / pixels));
 
         // Stop after an image of one sample per pixel: it has no variance to continue from.
-        if (judge(rounds, result, stats) || rays >= max_target_samples * pixels || rounds.freedom == 0) return 0;
-        if (begin_allotment(rounds, result, stats)) rays = 0;
+        const bool meets = judge(rounds, image.layers, stats);
+        if (meets || rays >= max_target_samples * pixels || rounds.freedom == 0) return 0;
+        if (begin_allotment(rounds, image.layers, stats)) rays = 0;
         work = next_round(rounds, stats);
         if (work == 0 || rounds.goal.error == 0) continue;
         make_forecast((rounds.expected - rounds.done) * rounds.work_seconds, rounds, rendering.options, stats);
@@ -152,14 +161,53 @@ double render_rounds(TargetRounds& rounds, const Rendering& rendering, double wo
     return work;
 }
 
+// Renders from the scout, if there is one, or from nothing, until the integrator is to be checked; returns whether the
+// image is done.
+bool render_until_check(TargetRounds& rounds, const Rendering& rendering, ImageSoFar& image) {
+    const bool scouted = rounds.choice && rounds.choice->scout;
+    const double work = scouted ? begin_with_scout(rounds, image.layers, image.stats) : first_round(rounds);
+    if (rounds.goal.error > 0 && has_integrator(rendering.mode)) {
+        const double ahead = seconds_ahead(rounds, work);
+        const bool wait = ahead < infinity && work * rounds.work_seconds < soon && image.stats.forecast_seconds == 0;
+        if (!wait) make_forecast(ahead, rounds, rendering.options, image.stats);
+    }
+    return render_rounds(rounds, rendering, work, rounds.checks_early() ? 1 : max_rounds, image) == 0;
+}
+
 // What is checked: the finished image, or one that its first rounds show, with the noise it is meant to reach.
-CheckedImage checked_image(const TargetRounds& rounds, const Layers& image, const FrameStats& stats, bool is_done,
-                           bool may_restart) {
-    const double taken = stats.samples;
-    if (is_done) return {image, *stats.noise, taken, taken, may_restart};
+CheckedImage checked_image(const TargetRounds& rounds, const ImageSoFar& image, bool is_done, bool may_restart) {
+    const double taken = image.stats.samples;
+    if (is_done) return {image.layers, *image.stats.noise, taken, taken, may_restart};
     const double bound = rounds.noise_target();
     const double unit = rounds.allotment ? rounds.allotment->rays / pixel_count(rounds.view) : 1;
-    return {image, {bound, bound, bound}, unit * rounds.expected, unit * rounds.done, may_restart};
+    return {image.layers, {bound, bound, bound}, unit * rounds.expected, unit * rounds.done, may_restart};
+}
+
+// Checks the integrator. Starts over with another candidate and returns true if the check asks for one; otherwise
+// renders what the image still lacks.
+bool check_starts_over(TargetRounds& rounds, Rendering& rendering, bool is_done, uint32_t check, ImageSoFar& image) {
+    const Goal& goal = rounds.goal;
+    const Mode& mode = rendering.mode;
+    const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;
+    Goal asked = goal;
+    if (!rounds.is_timed) asked.seconds = 0; // no limit from the forecast: a finer candidate may take less time
+    const CheckedImage checked = checked_image(rounds, image, is_done, check < max_checks);
+    const Choice after = check_choice(*rounds.choice, checked, until, mode, rounds.view, rendering.snapshot,
+                                      rendering.requested, asked, check, rendering.options);
+    if (after.candidate.name != rounds.choice->candidate.name) {
+        begin(after, rounds, rendering, image.stats);
+        return true;
+    }
+    rounds.choice = after;
+    note_integrator(after, image.stats);
+
+    const double times = after.times_to(goal.error, after.measured.integrator.bound, checked.noise);
+    const double left = (times * checked.samples - checked.done) * after.measured.sample_work;
+    const bool worth = !from_contest(after, mode) || left < goal.other_work;
+    const bool lacks = !is_done || (rounds.freedom > 0 && !judge(rounds, image.layers, image.stats));
+    if (goal.error > 0 && worth && lacks)
+        render_rounds(rounds, rendering, next_round(rounds, image.stats), max_rounds, image);
+    return false;
 }
 }
 
@@ -171,52 +219,24 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     const std::optional<OrdersError> orders = measure_orders(mode, view, snapshot, settings, goal, options);
     TargetRounds rounds = rounds_of(mode, view, goal);
     rounds.start = start;
-    Rendering rendering{mode, snapshot, options, settings, nullptr};
+    Rendering rendering{mode, snapshot, options, settings, settings, nullptr};
     stats = {};
-    Layers result;
-    int round = 0;
-    const bool measured = has_integrator(mode) || goal.seconds > 0;
-    if (measured) {
+    ImageSoFar image{{}, stats};
+    if (has_integrator(mode) || goal.seconds > 0) {
         begin(choice_for(rounds, snapshot, settings, options), rounds, rendering, stats);
         stats.prepare_seconds = goal.clock() - rounds.start;
-        if (rounds.choice->scout) round = 1; // no round may reuse the scout's random numbers
+        if (rounds.choice->scout) image.rounds = 1; // no round may reuse the scout's random numbers
     }
     const std::optional<Noise> moments = measure_moments(rounds, rendering);
     for (uint32_t check = 1; check <= max_checks; ++check) {
-        const bool scouted = measured && rounds.choice->scout;
-        const double work = scouted ? begin_with_scout(rounds, result, stats) : first_round(rounds);
-        if (goal.error > 0 && has_integrator(mode)) {
-            const double ahead = seconds_ahead(rounds, work);
-            const bool wait = ahead < infinity && work * rounds.work_seconds < soon && stats.forecast_seconds == 0;
-            if (!wait) make_forecast(ahead, rounds, options, stats);
-        }
-        const bool early = rounds.checks_early();
-        const bool is_done = render_rounds(rounds, rendering, work, early ? 1 : max_rounds, result, stats, round) == 0;
-        if (!has_integrator(mode) || (goal.seconds > 0 && rounds.check_seconds == 0)) break;
-
-        const double until = rounds.start + goal.seconds - 0.5 * rounds.check_seconds;
-        Goal asked = goal;
-        if (!rounds.is_timed) asked.seconds = 0; // no limit from the forecast: a finer candidate may take less time
-        const CheckedImage picture = checked_image(rounds, result, stats, is_done, check < max_checks);
-        const Choice after =
-            check_choice(*rounds.choice, picture, until, mode, rounds.view, snapshot, settings, asked, check, options);
-        if (after.candidate.name != rounds.choice->candidate.name) {
-            begin(after, rounds, rendering, stats);
-            continue;
-        }
-        rounds.choice = after;
-        note_integrator(after, stats);
-        const double times = after.times_to(goal.error, after.measured.integrator.bound, picture.noise);
-        const double left = (times * picture.samples - picture.done) * after.measured.sample_work;
-        const bool worth = !from_contest(after, mode) || left < goal.other_work;
-        const bool lacks = !is_done || (rounds.freedom > 0 && !judge(rounds, result, stats));
-        if (goal.error > 0 && worth && lacks)
-            render_rounds(rounds, rendering, next_round(rounds, stats), max_rounds, result, stats, round);
-        break;
+        const bool is_done = render_until_check(rounds, rendering, image);
+        const bool has_time = goal.seconds == 0 || rounds.check_seconds > 0;
+        if (!has_integrator(mode) || !has_time) break;
+        if (!check_starts_over(rounds, rendering, is_done, check, image)) break;
     }
     stats.orders = orders, stats.moments_error = moments;
     stats.goal_seconds = goal.clock() - rounds.start;
     if (options.progress) options.progress(1);
-    return result;
+    return std::move(image.layers);
 }
 }
