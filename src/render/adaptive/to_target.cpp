@@ -161,8 +161,8 @@ double render_rounds(TargetRounds& rounds, const Rendering& rendering, double wo
     return work;
 }
 
-// Renders from the scout, if there is one, or from nothing, until the integrator is to be checked; returns whether the
-// image is done.
+// Renders until the image is done or its integrator is to be checked, beginning with the scout if there is one; returns
+// whether it is done.
 bool render_until_check(TargetRounds& rounds, const Rendering& rendering, ImageSoFar& image) {
     const bool scouted = rounds.choice && rounds.choice->scout;
     const double work = scouted ? begin_with_scout(rounds, image.layers, image.stats) : first_round(rounds);

@@ -32,7 +32,7 @@ HWY_EXPORT(texel_sizes_kernel);
 namespace {
 constexpr float widest_cone = 70 * pi / 180; // half angle of a spot with a single image
 
-// A single picture of a spot's cone, or the six of a cube.
+// A single image of a spot's cone, or the six of a cube.
 void fit_tangents(const Light& light, const ShadowMapOptions& options, ShadowMap& map) {
     const bool cube = shines_around(light) || light.outer_cone > widest_cone;
     map.projection = cube ? LightProjection::all_around : LightProjection::perspective;
