@@ -33,9 +33,9 @@ std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snaps
 std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light, dvec3 off) {
     CacheKey key = shadow_key(snapshot, light);
     return cached(snapshot, "shadow volumes", std::move(key.add(off)), [&] {
-        LightPoint point = center_of(light);
-        point.at += off;
-        return make_shadow_volumes(cached_shadow_mesh(snapshot, light), point, shadow_cone(light));
+        std::shared_ptr<const ShadowMesh> mesh = cached_shadow_mesh(snapshot, light);
+        const LightPoint point = visible_point(*mesh, center_of(light), off);
+        return make_shadow_volumes(std::move(mesh), point, shadow_cone(light));
     });
 }
 

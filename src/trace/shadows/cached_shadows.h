@@ -15,7 +15,7 @@ std::shared_ptr<const ShadowMap> cached_shadow_map(const View& view, const Snaps
 // The triangles that may shadow anything the light reaches.
 std::shared_ptr<const ShadowMesh> cached_shadow_mesh(const Snapshot& snapshot, const Light& light);
 
-// Shadow volumes of the light's center, or of a point offset from it by `off`. The light must have shadow casters.
+// Shadow volumes of the light's center, or of visible_point() at `off` from it. The light must have shadow casters.
 std::shared_ptr<const ShadowVolumes> cached_shadow_volumes(const Snapshot& snapshot, const Light& light,
                                                            dvec3 off = dvec3(0));
 

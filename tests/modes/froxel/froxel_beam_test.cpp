@@ -188,6 +188,20 @@ TEST(FroxelBeam, ShadowsOfALampWithARadiusAreSoft) {
     }
 }
 
+// Half of a lamp's sphere is above the ceiling that it hangs from. The half below lights the room as march says.
+TEST(FroxelBeam, ALampHalfInACeilingLightsTheRoomBelow) {
+    const Medium mist = homogeneous_medium(0.4f, {vec3(-1), {1, 0.5f, 1}});
+    const std::vector<Mesh> room{quad({-1, 0.5f, -1}, {2, 0, 0}, {0, 0, 2}),
+                                 box_of({-0.2f, -0.6f, -0.4f}, {-0.1f, 0.15f, 0.2f})};
+    const View view = view_of({0.2f, 0.1f, 4}, {0, 0, 0}, {96, 54});
+    Light lamp = point_light({-0.5f, 0.45f, 0.1f}, 5);
+    lamp.radius = 0.3f;
+    const TestScene stage = make_scene({mist}, {lamp}, room, vec3(0));
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
+    const double truth = mean_of(marched(stage.snapshot, exact_settings(), rays));
+    EXPECT_NEAR(mean_of(scattered(froxels(view, stage.snapshot, {}), rays)) / truth, 1, 0.05);
+}
+
 // In grid fog as in any, what lies next to a lamp is found by the rays themselves: its density changes within a froxel.
 TEST(FroxelBeam, FogNextToALampIsThatOfTheReference) {
     const Medium banks =

@@ -2,6 +2,9 @@
 
 #include "scene/light.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace tyndall {
 namespace {
 bool in_ball(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, const LightPoint& light) {
@@ -35,6 +38,32 @@ ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const 
     for (uint32_t e = 0; e < volumes.size(); ++e)
         if (volumes[e]) result.sides.push_back({e, volumes[e]});
     return result;
+}
+
+namespace {
+// Where a segment from `origin` passes through a triangle, as a fraction of its length; infinite = not (Möller and
+// Trumbore 1997).
+double passes(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, dvec3 origin, dvec3 way) {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    const dvec3 a = mesh.corners[triangle.corners[0]], to = origin - a;
+    const dvec3 ab = mesh.corners[triangle.corners[1]] - a, ac = mesh.corners[triangle.corners[2]] - a;
+    const dvec3 p = glm::cross(way, ac), q = glm::cross(to, ab);
+    const double volume = glm::dot(ab, p), u = glm::dot(to, p) / volume, v = glm::dot(way, q) / volume;
+    const double at = glm::dot(ac, q) / volume;
+    return u >= 0 && v >= 0 && u + v <= 1 && at > 0 ? at : never; // NaN where they are parallel
+}
+}
+
+LightPoint visible_point(const ShadowMesh& mesh, LightPoint center, dvec3 off) {
+    constexpr double at_center = 1e-6, gap = 1e-3; // of the offset: a triangle through the center hides half the sphere
+    if (off == dvec3(0)) return center;
+    double end = 1;
+    for (const ShadowMesh::Triangle& triangle : mesh.triangles) {
+        const double at = passes(mesh, triangle, center.at, off);
+        if (at > at_center && at - gap < end && !in_ball(mesh, triangle, center)) end = std::max(at - gap, 0.0);
+    }
+    center.at += end * off;
+    return center;
 }
 
 int count_between(const ShadowVolumes& volumes, dvec3 point) {

@@ -41,6 +41,10 @@ struct ShadowVolumes {
 ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const LightPoint& light,
                                   std::optional<ShadowCone> reach = {});
 
+// A point of a light's sphere, `off` from its center, or the point just in front of the first triangle on the way there
+// that casts a shadow: behind a wall that the sphere sticks in, it would light nothing of the room.
+LightPoint visible_point(const ShadowMesh& mesh, LightPoint center, dvec3 off);
+
 // From a corner toward the light, of any length.
 inline dvec3 towards(const LightPoint& light, dvec3 corner) { return light.far ? light.at : light.at - corner; }
 
