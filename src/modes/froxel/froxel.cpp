@@ -47,7 +47,7 @@ FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings&
     scene.snapshot = with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), terms)));
     scene.snapshot = with_mesh_lamps(std::move(scene.snapshot), terms.emission);
     FieldLight fields = take_fields(scene.snapshot, settings.style, view.camera);
-    scene.settings = settings.of<FroxelSettings>(), scene.style = settings.style;
+    scene.settings = with_tile(settings.of<FroxelSettings>(), view.size), scene.style = settings.style;
     scene.sun_media = media_in_sunlight(view, scene.snapshot, scene.settings.tile);
     std::vector<const Medium*> bricks;
     for (const Medium& medium : scene.snapshot.media)
@@ -212,7 +212,7 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
 
     const FroxelHistory* memory = history ? history->froxels.get() : nullptr;
     FroxelStatics statics =
-        make_statics(view, frame->scene.snapshot, settings.of<FroxelSettings>(), memory ? &memory->statics : nullptr);
+        make_statics(view, frame->scene.snapshot, frame->scene.settings, memory ? &memory->statics : nullptr);
     if (statics.grid.faces.empty()) { // no fog in view
         if (history) history->froxels = nullptr;
         return with_field_light(std::move(fields), [](const RayBatch&, std::span<Scatter> results) {

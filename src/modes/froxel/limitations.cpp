@@ -119,7 +119,7 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     if (settings.terms.emission)
         add_lamps_for_fire(snapshot, limitations), add_lamps_for_surfaces(view, snapshot, limitations);
 
-    const FroxelSettings& froxel = settings.of<FroxelSettings>();
+    const FroxelSettings froxel = with_tile(settings.of<FroxelSettings>(), view.size);
     const FroxelSize size = middle_froxel(view, snapshot, froxel);
     for (const Light& light : snapshot.lights) {
         add_light(view, light, snapshot, froxel, size, limitations);

@@ -9,7 +9,7 @@ enum class FroxelVisibility { off, rays, intervals };
 enum class FroxelLookup { trilinear, tricubic, jittered };
 
 struct FroxelSettings {
-    int tile = 8; // pixels
+    int tile = 0; // pixels; 0 = 8, less in proportion below 360 lines
     int depth_slices = 64;
     float depth_growth = 4; // thickness of the last slice over that of the first
     FroxelVisibility visibility = FroxelVisibility::intervals;
@@ -18,6 +18,10 @@ struct FroxelSettings {
     float history = 0.9f; // weight of earlier frames
     bool amortise = false;
 };
+
+// With the tile for an image of `size` pixels: of as many froxels in small images as in large ones, where they would be
+// seen as blocks.
+FroxelSettings with_tile(FroxelSettings settings, ivec2 size);
 
 // For the mode's row of the table.
 void append_froxel_rows(std::vector<SettingRow>& rows);

@@ -4,6 +4,7 @@
 #include "trace/occlusion/occluders.h"
 
 #include "modes/froxel/froxel_fixtures.h"
+#include "modes/froxel/settings.h"
 #include "modes/froxel/tiles.h"
 
 #include <gmock/gmock.h>
@@ -15,6 +16,14 @@ Camera slanted_camera(bool ortho) {
     Camera camera = look_at({1, 2, 3}, {-2, 0.5f, -4}, {0.1f, 1, 0}, 0.9f);
     if (ortho) camera.ortho_height = 5;
     return camera;
+}
+
+TEST(FroxelGrid, SmallImagesHaveSmallFroxels) {
+    for (const auto& [lines, tile] : {std::pair{1080, 8}, {360, 8}, {180, 4}, {90, 2}, {54, 1}, {18, 1}})
+        EXPECT_EQ(with_tile({}, {lines * 16 / 9, lines}).tile, tile) << lines;
+    FroxelSettings chosen;
+    chosen.tile = 16;
+    EXPECT_EQ(with_tile(chosen, {96, 54}).tile, 16);
 }
 
 TEST(FroxelGrid, PointsOfThePictureComeBack) {

@@ -21,7 +21,7 @@ View still_view(float x = 0) { return view_of({x, 1.2f, 9}, {0, 1, 0}); }
 FroxelScene scene_of(const Snapshot& snapshot, bool amortise = false) {
     FroxelScene scene;
     scene.snapshot = snapshot;
-    scene.settings.amortise = amortise;
+    scene.settings = with_tile({}, still_view().size), scene.settings.amortise = amortise;
     for (const Light& light : snapshot.lights) {
         scene.depths.push_back(make_light_depth(scene.snapshot, light, LightTransmittance::grid, 32));
         scene.cones.push_back(cone_falloff(light)), scene.columns.emplace_back();
@@ -34,7 +34,7 @@ bool same(const FroxelLight& a, const FroxelLight& b) { return a.values == b.val
 
 TEST(FroxelStatics, ASceneSeenBeforeIsTheSame) {
     const TestScene here = stage();
-    const FroxelSettings settings;
+    const FroxelSettings settings = with_tile({}, still_view().size);
     const FroxelStatics first = make_statics(still_view(), here.snapshot, settings, nullptr);
     const FroxelStatics again = make_statics(still_view(), here.snapshot, settings, &first);
     EXPECT_FALSE(first.same_view || first.same_fog);
@@ -47,7 +47,7 @@ TEST(FroxelStatics, ASceneSeenBeforeIsTheSame) {
 
 TEST(FroxelStatics, WhatMovesIsLookedAtAnew) {
     TestScene here = stage();
-    const FroxelSettings settings;
+    const FroxelSettings settings = with_tile({}, still_view().size);
     const FroxelStatics first = make_statics(still_view(), here.snapshot, settings, nullptr);
     EXPECT_FALSE(make_statics(still_view(0.1f), here.snapshot, settings, &first).same_view);
 
