@@ -74,7 +74,7 @@ def drawing():
     size = offset - GAP
     parts = [text(24, 34, "Layers, folders and what they include", 18, "#0f172a", more='font-weight="600"'),
              text(24, 54, "Rows and columns are the same folders; a square says that the row includes the column."),
-             text(24, 70, "A layer includes itself and the layers above it, so that nothing lies right of the coloured blocks. "
+             text(24, 70, "A layer includes itself and the layers above it, so that nothing lies right of the colored blocks. "
                           "A technique includes no other technique.")]
     for layer, (start, length) in bands.items():
         color = LAYERS[layer]

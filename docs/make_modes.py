@@ -3,7 +3,7 @@
     python3 docs/make_modes.py build/release/tyndall OUT [SCENE...] [--res WxH]
 
 Run it on a machine that does nothing else: times are wall clock, those of the fog alone. Fog is timed and measured at one
-ray per pixel's centre, at preview.
+ray per pixel's center, at preview.
 """
 import argparse
 import json
@@ -12,7 +12,7 @@ import subprocess
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 SCENES = ["window", "spotlight", "pillars", "lantern"]
-CENTRES = ["--set", "pixel.filter=center", "--set", "pixel.lamp_samples=1"]
+CENTERS = ["--set", "pixel.filter=center", "--set", "pixel.lamp_samples=1"]
 REFERENCE = 8  # samples of the reference, whose noise counts as error
 
 
@@ -21,9 +21,9 @@ def run(*command):
 
 
 def measured(tyndall, scene, mode, out, options):
-    """Seconds of the fog, its error and the FLIP of the whole, at pixel centres."""
+    """Seconds of the fog, its error and the FLIP of the whole, at pixel centers."""
     image, stats = out / f"{mode}.exr", out / f"{mode}.json"
-    run(tyndall, "render", scene, "-o", image, "--mode", mode, "--stats-json", stats, "--samples", 1, *CENTRES, *options)
+    run(tyndall, "render", scene, "-o", image, "--mode", mode, "--stats-json", stats, "--samples", 1, *CENTERS, *options)
     report = json.loads(run(tyndall, "--json", "compare", image, out / "reference.exr"))
     error = report["layers"]["inscatter"]["rmse_rel"]
     return json.loads(stats.read_text())["totals"]["fog_seconds"], error, report["metrics"]["flip"]
@@ -41,7 +41,7 @@ def column(tyndall, name, out, resolution, modes):
     """The cells of one scene by mode."""
     out.mkdir(parents=True, exist_ok=True)
     scene, options = ROOT / f"scenes/{name}.json", ["--frames", "1", "--res", resolution, "--quiet"]
-    run(tyndall, "render", scene, "-o", out / "reference.exr", "--quality", "reference", "--samples", REFERENCE, *CENTRES, *options)
+    run(tyndall, "render", scene, "-o", out / "reference.exr", "--quality", "reference", "--samples", REFERENCE, *CENTERS, *options)
     cells = {}
     for mode in modes:
         seconds, error, flip = measured(tyndall, scene, mode, out, options)

@@ -18,7 +18,7 @@ from PIL import Image
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 WIDEST = 800  # pixels of a picture on a page; windows are left as they are
-SMALL = 400  # pixels of those that may have all their colours
+SMALL = 400  # pixels of those that may have all their colors
 PICTURE = re.compile(r"    (tyndall .*?)\s+#(?: .*)? docs/images/(\S+)$")
 
 
@@ -50,7 +50,7 @@ def make(tyndall, picture, words, before, directory):
         image = Image.open(written).convert("RGB")
         if not shown and image.width > WIDEST:
             image = image.resize((WIDEST, image.height * WIDEST // image.width), Image.LANCZOS)
-        if image.width > SMALL:  # in 256 colours, dithered so that beams show no bands
+        if image.width > SMALL:  # in 256 colors, dithered so that beams show no bands
             image = image.quantize(palette=image.quantize(256), dither=Image.FLOYDSTEINBERG)
         image.save(kept, optimize=True)
     else:

@@ -7,7 +7,7 @@ import random
 from drawing import breakup, spokes
 from make_geometry import Model, add, box, lathe, limb, moved, quad, sphere
 
-STAGE = 1.2  # metres above the hall
+STAGE = 1.2  # meters above the hall
 
 
 # --- what stands there ------------------------------------------------------------------------------------------------
@@ -133,7 +133,7 @@ def lamp(name, position, color, intensity, cone, target, **more):
 
 
 def beams():
-    """Eight cold beams from the back truss, over the band into the hall; neighbours follow each other, both halves mirrored."""
+    """Eight cold beams from the back truss, over the band into the hall; neighbors follow each other, both halves mirrored."""
     lamps = []
     for k in range(8):
         x = -7 + 2 * k

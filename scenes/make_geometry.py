@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the .glb models of the example scenes: python3 scenes/make_geometry.py [names]. Y up, metres."""
+"""Makes the .glb models of the example scenes: python3 scenes/make_geometry.py [names]. Y up, meters."""
 import json
 import math
 import pathlib

@@ -44,7 +44,7 @@ def matchbulb():
 
 
 def explosion_ground():
-    """The disc of a kilometre's radius below both explosions: pbrt's default material is Lambert's with an albedo of 0.5."""
+    """The disc of a kilometer's radius below both explosions: pbrt's default material is Lambert's with an albedo of 0.5."""
     m = Model()
     sand = m.material("ground", (0.5, 0.5, 0.5))
     m.node("ground", [(sand, lathe([(1000, -0.05), (0.001, -0.05)], 96))])

@@ -182,7 +182,7 @@ void read_keys(Viewer& viewer) {
         if (ImGui::IsKeyPressed(code, repeats)) {
             act(viewer, *action);
         } else if (flies && !io.KeyCtrl) {
-            for (double& metres : action->numbers) metres *= flying * viewer.frame_seconds;
+            for (double& meters : action->numbers) meters *= flying * viewer.frame_seconds;
             act(viewer, *action);
         }
     }

@@ -68,11 +68,11 @@ Run add_bake(const Command& program) {
         .required();
     command.option("--frames", args->frames, "frames to bake: 1-48, 1-48x2 (every second), 1,5,9 (default: 1)",
                    "RANGE");
-    command.option("--voxel-size", args->voxel_size, "edge of a voxel in metres, instead of the recipe's", "METRES");
+    command.option("--voxel-size", args->voxel_size, "edge of a voxel in meters, instead of the recipe's", "METERS");
     command.flag("--float", args->full_float, "store 32-bit floats; 16 bits otherwise, enough for fog");
     command.option("--compression", args->compression, "blosc (default) or zip, for readers without Blosc", "NAME");
     command.flag("--velocity", args->velocity,
-                 "also write a grid \"vel\": the velocity that advects the fog, in metres per second");
+                 "also write a grid \"vel\": the velocity that advects the fog, in meters per second");
     command.flag("--resume", args->resume, "skip frames that exist and are up to date");
     command.footer("Example: two seconds of drifting dust with 4 cm voxels\n"
                    "  tyndall bake volumes/drifting_dust.json -o fog/dust.####.vdb --frames 1-48 --voxel-size 0.04\n"

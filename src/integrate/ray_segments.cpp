@@ -55,7 +55,7 @@ void divide(const SingleScattering& frame, const Ray& ray, double low, double hi
     double extinction = 0;
     const vec3 middle = ray.at(static_cast<float>(0.5 * (low + high)));
     for (const Medium& medium : frame.snapshot.media)
-        extinction += double(grey_extinction(medium.optics)) * density_at(medium, middle);
+        extinction += double(gray_extinction(medium.optics)) * density_at(medium, middle);
     const int parts = static_cast<int>(std::clamp(std::ceil(extinction * (high - low) / max_depth), 1.0, 64.0));
     for (int i = 1; i <= parts; ++i) cuts.push_back(low + (high - low) * i / parts);
 }

@@ -22,17 +22,17 @@ Medium at_mean_density(const Medium& medium) {
 
 // Removes media without extinction, which a snapshot must not contain.
 void drop_clear(std::vector<Medium>& media) {
-    std::erase_if(media, [](const Medium& medium) { return !(grey_extinction(medium.optics) > 0); });
+    std::erase_if(media, [](const Medium& medium) { return !(gray_extinction(medium.optics) > 0); });
 }
 }
 
-bool is_stylised(const StyleSettings& a) {
+bool is_stylized(const StyleSettings& a) {
     const StyleSettings b;
     return a.light_depth != b.light_depth || a.view_depth != b.view_depth || a.density != b.density ||
            a.range != b.range || a.tint != b.tint;
 }
 
-Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style) {
+Snapshot stylized(const Snapshot& snapshot, const StyleSettings& style) {
     Snapshot result = snapshot;
     for (Medium& medium : result.media) {
         medium.optics.extinction *= style.density;

@@ -19,11 +19,11 @@ struct StyleSettings {
     vec3 tint{1};          // factor on the light of the fog
 };
 
-bool is_stylised(const StyleSettings& style);
+bool is_stylized(const StyleSettings& style);
 
 // The snapshot with style.density applied to its media, and style.tint to its lights, ambient light and emission. The
 // integrator must still apply style_fade() and view_depth; LightDepth::scale carries light_depth.
-Snapshot stylised(const Snapshot& snapshot, const StyleSettings& style);
+Snapshot stylized(const Snapshot& snapshot, const StyleSettings& style);
 
 // True if the fog's light fades with distance; the default range is infinite.
 inline bool fades(const StyleSettings& style) { return style.range < StyleSettings().range; }

@@ -86,7 +86,7 @@ double scattered_mean(const Snapshot& snapshot, const Ray& ray) {
     for (int i = 0; i < points; ++i)
         for (const Medium& medium : snapshot.media) {
             const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
-            const double extinction = double(density_at(medium, point)) * grey_extinction(medium.optics);
+            const double extinction = double(density_at(medium, point)) * gray_extinction(medium.optics);
             scattered += extinction * luminance(albedo_at(medium.optics, point)), dimmed += extinction;
         }
     const double share = dimmed > 0 ? scattered / dimmed * -std::expm1(-optical_depth(snapshot.media, ray)) : 0;

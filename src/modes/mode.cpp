@@ -22,7 +22,7 @@ const Mode& find_mode(std::string_view name, std::string_view where) {
     fail(ExitCode::usage, where, unknown_name("mode", name, names));
 }
 
-bool honours_style(const Mode& mode) { return mode.surfaces != Surfaces::own; }
+bool honors_style(const Mode& mode) { return mode.surfaces != Surfaces::own; }
 
 std::string row_prefix(const Mode& mode) {
     std::string prefix(mode.name);
@@ -33,7 +33,7 @@ std::string row_prefix(const Mode& mode) {
 bool reads(const Mode& mode, std::string_view row) {
     const std::string_view prefix = row.substr(0, row.find('.'));
     if (prefix == "pixel") return true;
-    if (prefix == "style") return honours_style(mode);
+    if (prefix == "style") return honors_style(mode);
     if (prefix == "fluence") return mode.adds_fluence;
     if (prefix == "terms") // terms.light* applies to surfaces too, which most modes leave to the renderer
         return row.starts_with("terms.light") ? mode.surfaces != Surfaces::own : mode.accuracy != Accuracy::artistic;

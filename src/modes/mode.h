@@ -85,7 +85,7 @@ const Mode& interactive_mode();
 const Mode& find_mode(std::string_view name, std::string_view where = {}); // throws Error (usage) listing the names
 
 // Whether the mode applies style.*; modes with Surfaces::own ignore it.
-bool honours_style(const Mode& mode);
+bool honors_style(const Mode& mode);
 
 // Prefix of a mode's own rows: radial_blur in radial_blur.samples.
 std::string row_prefix(const Mode& mode);

@@ -30,7 +30,7 @@ Gobo::Level halved(const Gobo::Level& fine, int planes) {
     return coarse;
 }
 
-bool is_grey(const Image<vec3>& image) {
+bool is_gray(const Image<vec3>& image) {
     return std::ranges::all_of(image.pixels, [](vec3 c) { return c.x == c.y && c.y == c.z; });
 }
 }
@@ -38,7 +38,7 @@ bool is_grey(const Image<vec3>& image) {
 namespace {
 std::shared_ptr<Gobo> gobo_of(const ReducedImage& picture) {
     auto gobo = std::make_shared<Gobo>();
-    gobo->planes = is_grey(picture.image) ? 1 : 3;
+    gobo->planes = is_gray(picture.image) ? 1 : 3;
     gobo->aspect = static_cast<float>(picture.size.y) / static_cast<float>(picture.size.x);
     Gobo::Level& level =
         gobo->levels.emplace_back(black_level(vec2(picture.size) / static_cast<float>(picture.factor), gobo->planes));

@@ -225,7 +225,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
     medium.name = source.name;
     medium.optics = optics_at(source, moment.seconds);
     if (source.emission_grid) medium.optics.emission.radiance = vec3(0);
-    const bool dims = grey_extinction(medium.optics) > 0;
+    const bool dims = gray_extinction(medium.optics) > 0;
     MovingFiles files;
     files.before = before.grids ? before.grids->frames.get() : nullptr;
     files.time = sequence_time(scene, source, moment, missing, files.before, snapshot);

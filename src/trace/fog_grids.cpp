@@ -109,8 +109,8 @@ FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, 
 StoredProperty property_between(const SequenceTime& time, const GridProperty& here, const GridProperty& next,
                                 Quantity quantity, const std::string& what) {
     StoredProperty property;
-    const auto grey = [](const GridProperty& one) { return one.channels[0].bricks == one.channels[1].bricks; };
-    const size_t channels = grey(here) && grey(next) ? 1 : 3;
+    const auto gray = [](const GridProperty& one) { return one.channels[0].bricks == one.channels[1].bricks; };
+    const size_t channels = gray(here) && gray(next) ? 1 : 3;
     for (size_t c = 0; c < channels; ++c) add_pool(volume_at(time, here.channels[c], next.channels[c], what), property);
     if (quantity != Quantity::number) add_pool(volume_at(time, here.coverage, next.coverage, what), property);
     return property;

@@ -133,17 +133,17 @@ float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const 
     std::vector<Box> meshes;
     for (const Mesh& mesh : scene.meshes) meshes.push_back(posed_bounds(mesh, {}));
     const float extent = extent_of(scene, seconds_of(scene, frame, shutter, 0.5f));
-    std::vector<float> travelled;
+    std::vector<float> traveled;
     std::vector<std::optional<vec2>> before;
     for (int look = 0; look < looks; ++look) {
         const double seconds = seconds_of(scene, frame, shutter, static_cast<float>(look) / (looks - 1));
         const Camera now = camera_at(scene, camera, seconds);
         const Points points = points_at(scene, meshes, seconds, extent);
-        travelled.resize(points.size(), 0), before.resize(points.size());
+        traveled.resize(points.size(), 0), before.resize(points.size());
         for (size_t i = 0; i < points.size(); ++i) {
             const std::optional<vec2> at = pixel_of(now, size, points[i]);
             if (at && before[i] && (near_picture(*at, size) || near_picture(*before[i], size)))
-                travelled[i] += glm::distance(*at, *before[i]);
+                traveled[i] += glm::distance(*at, *before[i]);
             before[i] = at;
         }
     }
@@ -152,7 +152,7 @@ float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const 
     const Camera last = camera_at(scene, camera, seconds_of(scene, frame, shutter, 1));
     const std::optional<vec2> turned = pixel_of(last, size, last.position + extent * first.forward);
     float most = turned ? glm::distance(*turned, 0.5f * vec2(size)) : glm::length(vec2(size));
-    for (const float way : travelled)
+    for (const float way : traveled)
         if (std::isfinite(way)) most = std::max(most, way);
     return most;
 }

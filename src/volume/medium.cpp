@@ -25,7 +25,7 @@ void densities(const Medium& medium, const float* x, const float* y, const float
 }
 
 float Medium::majorant() const {
-    return grey_extinction(optics) * (density.kind == DensityKind::bricks ? density.bricks->highest : 1.0f);
+    return gray_extinction(optics) * (density.kind == DensityKind::bricks ? density.bricks->highest : 1.0f);
 }
 
 vec3 albedo_at(const Optics& optics, vec3 point) {

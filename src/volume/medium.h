@@ -51,7 +51,7 @@ inline bool only_emits(const Optics& optics) { return optics.emission.field != n
 vec3 albedo_at(const Optics& optics, vec3 point);
 
 // The scalar extinction, valid because all media are gray.
-inline float grey_extinction(const Optics& optics) {
+inline float gray_extinction(const Optics& optics) {
     assert(optics.extinction.x == optics.extinction.y && optics.extinction.x == optics.extinction.z);
     return optics.extinction.x;
 }

@@ -140,7 +140,7 @@ double density_column(const Medium& medium, const Ray& ray) {
 }
 
 double optical_depth(const Medium& medium, const Ray& ray) {
-    return grey_extinction(medium.optics) == 0 ? 0 : grey_extinction(medium.optics) * density_column(medium, ray);
+    return gray_extinction(medium.optics) == 0 ? 0 : gray_extinction(medium.optics) * density_column(medium, ray);
 }
 
 double optical_depth(std::span<const Medium> media, const Ray& ray) {

@@ -83,7 +83,7 @@ float collision_distance(const Medium& medium, const Ray& ray, Interval<float> r
                          int& lookups) {
     double left = free_depth(first), found = infinity; // majorant optical depth to the next tentative collision
     walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
-        const double majorant = static_cast<double>(grey_extinction(medium.optics)) * fog.majorant;
+        const double majorant = static_cast<double>(gray_extinction(medium.optics)) * fog.majorant;
         for (double t = fog.low; majorant > 0;) {
             const double step = left / majorant;
             if (t + step >= fog.high) {
@@ -104,7 +104,7 @@ float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> 
     if (medium.density.kind != DensityKind::bricks)
         return static_cast<float>(std::exp(-optical_depth(medium, {ray.at(range.low), ray.direction, range.length()})));
     constexpr double small = 0.1, often = 4;
-    const double extinction = grey_extinction(medium.optics);
+    const double extinction = gray_extinction(medium.optics);
     double transmittance = 1, certain = 0; // transmittance so far, and control optical depth not yet applied to it
     double left = free_depth(random.next());
     walk_brick_fog(*medium.density.bricks, ray, {range.low, range.high}, [&](const Fog& fog, const auto& density) {

@@ -149,7 +149,7 @@ TEST(Frame, IsOrthonormalAndRightHandedForEveryAxis) {
     }
 }
 
-TEST(Colour, LuminanceOfWhiteIsOne) {
+TEST(Color, LuminanceOfWhiteIsOne) {
     EXPECT_FLOAT_EQ(luminance(vec3(1)), 1);
     EXPECT_GT(luminance(vec3(0, 1, 0)), luminance(vec3(1, 0, 0)));
     EXPECT_EQ(max_component(vec3(1, 3, 2)), 3);

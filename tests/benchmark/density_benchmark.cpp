@@ -65,7 +65,7 @@ struct Packet {
     alignas(64) float origin[48], direction[48];
 };
 
-// Rays of 4×4 neighbouring pixels each, row by row of a 256×256 picture; pixels a voxel apart in the middle of the fog.
+// Rays of 4×4 neighboring pixels each, row by row of a 256×256 picture; pixels a voxel apart in the middle of the fog.
 std::vector<Packet> packets() {
     std::vector<Packet> result(64 * 64);
     const vec3 forward = glm::normalize(vec3(0.5f, -0.3f, 1)), middle(127.5f), eye = middle - 400.0f * forward;

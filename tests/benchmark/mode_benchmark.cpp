@@ -5,7 +5,7 @@
 //     tyndall_benchmark --benchmark_filter=fog_of_picture/froxel
 //     TYNDALL_MODES=froxel,march TYNDALL_SCENE=scenes/pillars.json TYNDALL_SET=froxel.tile=4 tyndall_benchmark ...
 //     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=light,camera tyndall_benchmark ...
-//     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=fog TYNDALL_SET=froxel.amortise=on tyndall_benchmark ...
+//     TYNDALL_SIZE=1280x720 TYNDALL_MOVE=fog TYNDALL_SET=froxel.amortize=on tyndall_benchmark ...
 //     TYNDALL_ISA=avx512 tyndall_benchmark ...
 #include "base/clock.h"
 #include "base/parallel.h"
@@ -96,7 +96,7 @@ Movement movement_of(const std::string& list) {
     return movement;
 }
 
-// A picture's camera rays in tiles of 4×4 pixels, each up to the first surface, and a picture of grey surfaces before a
+// A picture's camera rays in tiles of 4×4 pixels, each up to the first surface, and a picture of gray surfaces before a
 // bright sky.
 struct PictureRays {
     std::vector<Ray> rays;

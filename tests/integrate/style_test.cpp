@@ -48,11 +48,11 @@ TEST_P(Styles, DepthsOfLightAndViewAreScaledApart) {
         const Scatter result = marched(slab.snapshot, styled, slab.ray);
         EXPECT_NEAR(result.radiance.x / slab.expected(light, view), 1, 1e-4) << light << " " << view;
         EXPECT_NEAR(result.transmittance, std::exp(-Slab::sigma * Slab::length), 1e-5);
-        EXPECT_EQ(is_stylised(styled.style), light != 1 || view != 1);
+        EXPECT_EQ(is_stylized(styled.style), light != 1 || view != 1);
     }
 }
 
-TEST_P(Styles, DensityThickensAndTintColours) {
+TEST_P(Styles, DensityThickensAndTintColors) {
     const Slab slab;
     Settings styled = settings();
     styled.style.density = 2;
@@ -85,7 +85,7 @@ TEST_P(Styles, RangeFades) {
     const double plain = light(styled);
     styled.style.range = 2.5f;
     EXPECT_NEAR(light(styled) / plain, (2 + 0.25) / 5, 2e-3);
-    EXPECT_TRUE(is_stylised(styled.style));
+    EXPECT_TRUE(is_stylized(styled.style));
 }
 
 TEST(Style, FogWithoutDensityIsGone) {
@@ -108,8 +108,8 @@ TEST(Style, EvenMediaKeepTheirMeanDensity) {
     const std::vector<Medium> even = homogeneous_media(std::vector{grid, homogeneous_medium(0.2f)});
     ASSERT_EQ(even.size(), 2u);
     EXPECT_EQ(even[0].density.kind, DensityKind::homogeneous);
-    EXPECT_FLOAT_EQ(grey_extinction(even[0].optics), 0.5f * grid.density.bricks->mean);
-    EXPECT_EQ(grey_extinction(even[1].optics), 0.2f);
+    EXPECT_FLOAT_EQ(gray_extinction(even[0].optics), 0.5f * grid.density.bricks->mean);
+    EXPECT_EQ(gray_extinction(even[1].optics), 0.2f);
 }
 }
 }

@@ -47,7 +47,7 @@ RayEstimate path_fog_light(const Snapshot& snapshot, const Ray& ray, int samples
     return estimate_ray(path_mode(snapshot, 1), ray, samples, fog_light);
 }
 
-// Points of a face, and the square metres that each stands for, as seen along its own normal.
+// Points of a face, and the square meters that each stands for, as seen along its own normal.
 struct FaceNode {
     dvec3 at, normal;
     double area;

@@ -54,7 +54,7 @@ std::vector<Emitter> places_of(const Medium& medium) {
 dvec3 light_by_quadrature(const Medium& fire, const Medium& fog, const Ray& ray) {
     const std::vector<Emitter> emitters = places_of(fire);
     const Interval<float> inside = clip(fog.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
-    const double extinction = double{grey_extinction(fog.optics)}, length = double{inside.length()};
+    const double extinction = double{gray_extinction(fog.optics)}, length = double{inside.length()};
     dvec3 sum(0);
     for (const QuadratureNode& along : gauss_legendre(24)) {
         const double t = double{inside.low} + along.at * length;

@@ -8,7 +8,7 @@
 #include <functional>
 
 namespace tyndall::test {
-// Voxels of .1 m, their centres at 0, .1, .2 ... m.
+// Voxels of .1 m, their centers at 0, .1, .2 ... m.
 SparseVolume tenth_volume(ivec3 size, const std::function<float(ivec3)>& value);
 
 // A file of one grid in the folder.

@@ -55,7 +55,7 @@ TEST(Fluence, IsWhatThinFogScattersOnce) {
 }
 
 TEST(Fluence, AboveALitFloorIsTwiceItsLightAndGoesUp) {
-    // A floor of base colour ρ under a sun of E: radiance ρE/π from half of all directions, φ = 2ρE, F = ρE upwards.
+    // A floor of base color ρ under a sun of E: radiance ρE/π from half of all directions, φ = 2ρE, F = ρE upwards.
     Scene scene;
     scene.materials = {lambert(vec3(0.5f, 0.25f, 1))};
     add_mesh(scene, floor_of(0, 4, 0));

@@ -81,7 +81,7 @@ Seen box_rays(const View& view, const Snapshot& snapshot) {
     return seen;
 }
 
-TEST(FogBuffer, AtFullSizeItIsTheSameAtPixelCentres) {
+TEST(FogBuffer, AtFullSizeItIsTheSameAtPixelCenters) {
     View view = small_view();
     view.jitter = Jitter::none;
     const Snapshot snapshot = lit_box();
@@ -117,7 +117,7 @@ TEST(FogBuffer, AShareOfThePictureIsCloseInSmoothFogAndExactWhereDepthDiffers) {
         // Of second order in the size of a pixel.
         EXPECT_LT(error / sum, 0.0015 * std::pow(static_cast<int>(share) + 1, 2)) << static_cast<int>(share);
 
-        // Every second row ends early: its rays are like no neighbour's.
+        // Every second row ends early: its rays are like no neighbor's.
         const Seen edges = camera_rays(view, 25, 7);
         const std::vector<Scatter> exact = ask(march, edges), edge = ask(spread, edges);
         for (size_t i = 0; i < edges.rays.size(); ++i) {

@@ -39,7 +39,7 @@ TEST(History, GoesOnWhileThePictureDoes) {
     snapshot.lights = {Light{}, Light{}};
     EXPECT_TRUE(resets([&] { snapshot.lights.pop_back(); })) << "a light out";
     EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity *= 2.1f; })) << "a light switched up";
-    EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity.y *= 0.4f; })) << "a light of another colour";
+    EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity.y *= 0.4f; })) << "a light of another color";
     EXPECT_TRUE(resets([&] { snapshot.lights[0].intensity *= 0.6f; })) << "a light dimmed at once";
     EXPECT_FALSE(resets([&] { snapshot.lights[0].intensity *= 0.85f; })) << "a light that flickers";
     EXPECT_TRUE(resets([&] { snapshot.ambient = vec3(1); })) << "ambient light switched on";

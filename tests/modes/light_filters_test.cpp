@@ -97,7 +97,7 @@ TEST(LightFilters, EveryTechniqueFollowsABroadGobo) {
             {"march", 0.03}, {"shadow-volume", 0.03}, {"shadow-map", 0.06}, {"froxel", 0.05}, {"cone", 0.03}};
         for (const auto& [mode, bound] : bounds) {
             const std::vector<Scatter> got = seen_by(mode, snapshot);
-            EXPECT_LT(relative_rmse(got, exact), bound) << mode << (colors ? " in colours" : "");
+            EXPECT_LT(relative_rmse(got, exact), bound) << mode << (colors ? " in colors" : "");
             EXPECT_NEAR(mean_of(got) / mean_of(exact), 1, 0.02) << mode;
         }
         if (colors) {

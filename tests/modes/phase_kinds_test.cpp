@@ -30,7 +30,7 @@ std::vector<NamedPhase> some_phases() {
             {"table", tabulated_bow(0.9)}};
 }
 
-// A ray from the eye that passes a lamp of 1 cd at a distance h, `before` metres behind the eye, and goes on for as
+// A ray from the eye that passes a lamp of 1 cd at a distance h, `before` meters behind the eye, and goes on for as
 // long, in fog of extinction s that is everywhere.
 double lamp_light(const Phase& phase, double s, double h, double before) {
     const auto part = [&](double v) { // u = h sinh v

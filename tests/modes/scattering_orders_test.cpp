@@ -56,7 +56,7 @@ void expect_as_predicted(float optical_radius, float g, int paths, int points, d
     for (uint32_t i = 0; i < static_cast<uint32_t>(points); ++i) {
         const Sample2 u = sample2(i, 8);
         const vec3 point(u.x, u.y, random_unit(i, 0, 0, 9));
-        extinction.push_back(grey_extinction(medium.optics) * density_at(medium, point));
+        extinction.push_back(gray_extinction(medium.optics) * density_at(medium, point));
         straight.push_back(std::exp(-optical_depth(medium, {point, -snapshot.lights[0].direction, infinity})));
         rays.push_back({point, random_direction(i, 10)});
     }

@@ -1,4 +1,4 @@
-"""Colour of a blackbody at luminance 1, linear Rec.709, channels below 0 cut off: Planck's law under the CIE 1931
+"""Color of a blackbody at luminance 1, linear Rec.709, channels below 0 cut off: Planck's law under the CIE 1931
 observer, whose table Mitsuba brings."""
 import functools
 

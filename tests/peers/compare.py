@@ -97,7 +97,7 @@ def cannot(name, scene, orders):
 
 
 def read_voxels(scene, folder):
-    """Its grids by name, `first` (centre of the first voxel) and `size` of the baked fog, or None when it is even."""
+    """Its grids by name, `first` (center of the first voxel) and `size` of the baked fog, or None when it is even."""
     if not scene.fog.recipe:
         return None
     arrays = folder / f"{scene.name}.npz"

@@ -61,7 +61,7 @@ def surface(box):
 
 
 def fire_material(fog):
-    """Principled Volume: what its colour scatters and its temperature emits; black absorption takes the rest. By its own
+    """Principled Volume: what its color scatters and its temperature emits; black absorption takes the rest. By its own
     Temperature Attribute 5.0.1 shows nothing beside a Density Attribute: a node reads that grid."""
     result = material("fire", "ShaderNodeVolumePrincipled", {
         "Color": (*fog.albedo, 1), "Density": fog.extinction, "Anisotropy": fog.g, "Density Attribute": "density",

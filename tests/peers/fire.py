@@ -1,5 +1,5 @@
-"""Glowing fog for the referee: Blender's Principled Volume at Blackbody Intensity 1, per metre and whatever the density:
-5.670373e-8 T^4 1e-6 / pi times a colour of luminance 1."""
+"""Glowing fog for the referee: Blender's Principled Volume at Blackbody Intensity 1, per meter and whatever the density:
+5.670373e-8 T^4 1e-6 / pi times a color of luminance 1."""
 import math
 
 import numpy as np
@@ -13,7 +13,7 @@ STEPS = 32  # along a ray that looks for light
 
 
 def glow(kelvin):
-    """Radiance per metre [..., rgb]."""
+    """Radiance per meter [..., rgb]."""
     return (5.670373e-8 * 1e-6 / math.pi * kelvin ** 4)[..., None] * color(kelvin)
 
 

@@ -44,14 +44,14 @@ def phase_function(fog):
 
 
 def medium(fog, voxels):
-    """voxels: (centre of the first voxel, voxel size, densities [x, y, z]) of a grid."""
+    """voxels: (center of the first voxel, voxel size, densities [x, y, z]) of a grid."""
     common = {"albedo": rgb(fog.albedo), "phase": phase_function(fog)}
     if voxels is None:
-        strongest = float(np.max(fog.extinction))  # a colour has to stay within 0..1
+        strongest = float(np.max(fog.extinction))  # a color has to stay within 0..1
         return {"type": "homogeneous", "sigma_t": rgb(np.divide(fog.extinction, strongest)), "scale": strongest,
                 **common}, (fog.low, fog.high)
-    # A layer of zeros around the voxels, so that density falls to 0 between the last voxel centre and the next as in
-    # OpenVDB. Mitsuba's grid spans the voxels' outer faces: half a voxel beyond the centres.
+    # A layer of zeros around the voxels, so that density falls to 0 between the last voxel center and the next as in
+    # OpenVDB. Mitsuba's grid spans the voxels' outer faces: half a voxel beyond the centers.
     padded = np.pad(voxels["density"], 1)
     low = voxels["first"] - 1.5 * voxels["size"]
     high = low + np.array(padded.shape) * voxels["size"]

@@ -1,4 +1,4 @@
-"""The scenes every renderer is given, described once: Y up, metres, right-handed, candela, lux and nit, linear colours."""
+"""The scenes every renderer is given, described once: Y up, meters, right-handed, candela, lux and nit, linear colors."""
 import dataclasses
 
 SIZE = (160, 96)  # pixels
@@ -38,7 +38,7 @@ class Light:
 @dataclasses.dataclass
 class Fog:
     """Even fog in a box, or the grid that `tyndall bake` makes of a recipe with these bounds. `extinction` may be a
-    colour. Above 0, `alpha` makes the phase function Draine's; with a `fire` in the recipe the temperature glows as in
+    color. Above 0, `alpha` makes the phase function Draine's; with a `fire` in the recipe the temperature glows as in
     Blender's Principled Volume."""
     low: tuple
     high: tuple

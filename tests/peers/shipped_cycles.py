@@ -154,7 +154,7 @@ def fog_material(medium, sampling):
 
 
 def with_emission(path, medium):
-    """A copy of a .vdb with what its temperature emits, nits per metre."""
+    """A copy of a .vdb with what its temperature emits, nits per meter."""
     sys.path += map(str, pathlib.Path(bpy.__file__).parents[3].glob("python/lib/python*/site-packages"))
     import openvdb
     grids = {grid.name: grid for grid in openvdb.readAll(str(path))[0]}

@@ -1,6 +1,6 @@
 """Grids of a .vdb as arrays, through the OpenVDB inside Blender's module: python voxels.py FILE.vdb OUT.npz
-OUT.npz holds each grid [x, y, z] by its name over one box of voxels, first (the centre of the first voxel in the world)
-and size (edge of a voxel), metres. In OpenVDB whole index coordinates are where voxels have their value: their centres here."""
+OUT.npz holds each grid [x, y, z] by its name over one box of voxels, first (the center of the first voxel in the world)
+and size (edge of a voxel), meters. In OpenVDB whole index coordinates are where voxels have their value: their centers here."""
 import pathlib
 import sys
 

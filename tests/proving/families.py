@@ -1,5 +1,5 @@
 """Kinds of scenes, drawn by chance from a seed within wide ranges: what nobody had before their eyes when the tool was
-tuned. A family is a function of a Chance that returns a Drawn scene. Metres, seconds, candela, lux and nits."""
+tuned. A family is a function of a Chance that returns a Drawn scene. Meters, seconds, candela, lux and nits."""
 import copy
 import dataclasses
 import math
@@ -40,8 +40,8 @@ class Chance(random.Random):
         return [self.uniform(a, b) for a, b in zip(low, high)]
 
     def color(self, low=0.05, high=0.9):
-        grey = self.uniform(low, high)
-        return [grey] * 3 if self.happens(0.4) else [min(0.95, grey * self.uniform(0.5, 1.5)) for _ in range(3)]
+        gray = self.uniform(low, high)
+        return [gray] * 3 if self.happens(0.4) else [min(0.95, gray * self.uniform(0.5, 1.5)) for _ in range(3)]
 
     def optics(self, extinction):
         albedo = self.uniform(0.5, 0.99)
@@ -67,7 +67,7 @@ class Chance(random.Random):
         return {"type": kind, **self.optics(2 * extinction), "recipe": self.recipe(low, high)}
 
     def point_light(self, position, size, radius=0):
-        """Bright enough for `size` metres around."""
+        """Bright enough for `size` meters around."""
         return {"type": "point", "position": list(position), "intensity": 10 * size * size * self.log(0.3, 3),
                 "color": self.color(0.6, 0.95), "radius": radius}
 
@@ -379,7 +379,7 @@ def street(c):
 
 
 def scaled(c):
-    """One of the others, as small as a millimetre, as vast as a hundred kilometres, or far from the origin."""
+    """One of the others, as small as a millimeter, as vast as a hundred kilometers, or far from the origin."""
     drawn = c.choice([slats, soft_lamps, headlights, clouds, smoke, keyhole, overlapping])(c)
     drawn.plain = copy.deepcopy(drawn)
     if c.happens(0.6):

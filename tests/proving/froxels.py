@@ -1,8 +1,8 @@
-"""How far froxels' fog light is off at pixel centres, on scenes drawn by chance that have point or spot lights.
+"""How far froxels' fog light is off at pixel centers, on scenes drawn by chance that have point or spot lights.
 
     froxels.py --seeds 5001-5080 [--count 50] [--program build/release/tyndall] [-o DIR] [--jobs 1]
 
-The layer `inscatter` of `--mode froxel --quality preview`, one sample at each pixel's centre, against the mean of several such of
+The layer `inscatter` of `--mode froxel --quality preview`, one sample at each pixel's center, against the mean of several such of
 `march --quality reference`: E, and FLIP of the layer seen as an image (needs oiiotool). Prints a row a scene and what they add up
 to, writes DIR/froxels.json, and ends with 1 where E is above 10 % or FLIP above .04 in more than one scene of twenty."""
 import argparse
@@ -22,7 +22,7 @@ from scene_files import write_scene
 
 SOURCE = pathlib.Path(__file__).parents[2]
 MOST_ERROR, MOST_FLIP = 0.10, 0.04
-CENTRES = ("--set", "pixel.filter=center", "--set", "pixel.edge_samples=1", "--set", "pixel.lamp_samples=1")
+CENTERS = ("--set", "pixel.filter=center", "--set", "pixel.edge_samples=1", "--set", "pixel.lamp_samples=1")
 MOST_SECONDS = 60  # for the exact image; scenes that take longer are left out and counted
 EXACT = (16, 4)  # samples, each with other random numbers along its ray; the fewer where more would take too long
 
@@ -32,7 +32,7 @@ def has_lamp(scene):
 
 
 def only_fog(file):
-    """The image with its fog light for colours, in a file beside it."""
+    """The image with its fog light for colors, in a file beside it."""
     fog = file.with_suffix(".fog.exr")
     subprocess.run(["oiiotool", file, "--ch", "R=inscatter.R,G=inscatter.G,B=inscatter.B", "-d", "float", "-o", fog], check=True)
     return fog
@@ -46,7 +46,7 @@ def prove(seed, options):
         scene = write_scene(drawn, size, folder / "scene", options.program)
         if not has_lamp(scene):
             return None
-        row, common = {"seed": seed, "family": family_of(seed).__name__}, ["--frames", drawn.frame, *CENTRES]
+        row, common = {"seed": seed, "family": family_of(seed).__name__}, ["--frames", drawn.frame, *CENTERS]
         own = render(options.program, scene, folder / "own.exr", ["--mode", "froxel", "--samples", 1, *common])
         for samples in EXACT:
             exact = render(options.program, scene, folder / "exact.exr",

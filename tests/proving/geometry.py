@@ -1,4 +1,4 @@
-"""Meshes of triangles, and the .glb they are written to: metres, Y up, one mesh a material."""
+"""Meshes of triangles, and the .glb they are written to: meters, Y up, one mesh a material."""
 import dataclasses
 import io
 import json
@@ -91,7 +91,7 @@ def wall_with_holes(width, height, holes, at):
 
 
 def scattered_quads(chance, count, low, high, size):
-    """Quads of about `size`, turned any way, with centres in a box or, given a function, where it says."""
+    """Quads of about `size`, turned any way, with centers in a box or, given a function, where it says."""
     numbers = np.random.default_rng(chance.getrandbits(32))
     centers = numbers.uniform(low, high, (count, 3))
     u = numbers.normal(size=(count, 3))

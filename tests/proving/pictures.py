@@ -46,7 +46,7 @@ def read_channels(path):
         line, size = struct.unpack_from("<iI", data, offset)
         lines = pixels[line - low_y:line - low_y + 16]
         block = np.frombuffer(data, np.uint8, size, offset + 8)
-        if size < lines.nbytes:  # halves of bytes apart, differences of neighbours
+        if size < lines.nbytes:  # halves of bytes apart, differences of neighbors
             block = np.frombuffer(zlib.decompress(block), np.uint8).astype(np.int64)
             block[1:] -= 128
             block = np.cumsum(block).astype(np.uint8)

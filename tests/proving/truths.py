@@ -11,7 +11,7 @@ from windows import allot, area_of, cautious, divide, inside
 
 RUNS = 4  # independent pictures of a truth
 THREADS, MOST_SAMPLES = 2, 4096
-FEWEST_SAMPLES, FEWEST_DIFFERENCES = 4, 2  # a single one would be the centres of pixels
+FEWEST_SAMPLES, FEWEST_DIFFERENCES = 4, 2  # a single one would be the centers of pixels
 COARSER = 3  # than the picture, each way: those that recipes are chosen by
 STEP = 16   # variances fall by this factor at most at once: far from what is wanted, little is known
 HOPE = 4    # forecasts may be as many times too long, where there is nothing else to try

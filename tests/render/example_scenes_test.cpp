@@ -21,7 +21,7 @@ using namespace test;
 
 const std::filesystem::path source_dir = TYNDALL_SOURCE_DIR;
 
-// Fog light of pixel centres at a small size, without jitter.
+// Fog light of pixel centers at a small size, without jitter.
 std::vector<Scatter> fog_light(const Snapshot& snapshot, const Camera& camera, const Settings& settings) {
     View view;
     view.camera = camera, view.size = {64, 36};

@@ -58,7 +58,7 @@ Mode mode_of(ScatterFunction (*prepare)(const View&, const Snapshot&, const Sett
 }
 
 ScatterFunction prepare_emissive(const View&, const Snapshot& snapshot, const Settings&, History*) {
-    const float extinction = snapshot.media.empty() ? 0 : grey_extinction(snapshot.media[0].optics);
+    const float extinction = snapshot.media.empty() ? 0 : gray_extinction(snapshot.media[0].optics);
     return [extinction, lights = snapshot.lights.size()](const RayBatch& batch, std::span<Scatter> results) {
         for (size_t i = 0; i < batch.rays.size(); ++i) {
             const float transmittance = std::exp(-extinction * batch.rays[i].t_max);

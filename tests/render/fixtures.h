@@ -44,7 +44,7 @@ ScatterFunction prepare_emissive(const View&, const Snapshot& snapshot, const Se
 
 ScatterFunction prepare_nothing(const View&, const Snapshot&, const Settings&, History*);
 
-// Light that depends on everything a mode is told, neighbours included.
+// Light that depends on everything a mode is told, neighbors included.
 ScatterFunction prepare_everything(const View&, const Snapshot&, const Settings&, History*);
 
 // Of pictures: whether they agree in every bit, and the pixels from `low` to before `high`.

@@ -104,7 +104,7 @@ std::string tiles_of(const TempFolder& folder, const Image<vec3>& pixels, const 
     return read_file(folder.file("a.exr"));
 }
 
-// A part of depth, then the colours.
+// A part of depth, then the colors.
 std::string parts_of(const TempFolder& folder, const Image<vec3>& pixels, const Written& as) {
     const Plane plane(pixels, as);
     Imf::Header colors = header_of(pixels, as), depth = header_of(pixels, {});
@@ -187,9 +187,9 @@ TEST(ExrPicture, PartsLuminanceAndChroma) {
     for (const Imf::Compression compression : {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAA_COMPRESSION})
         EXPECT_LE(error_against(sky, parts_of(folder, sky, {compression})), allowed(compression));
     EXPECT_LE(error_against(sky, chroma_of(folder, sky, Imf::WRITE_YC)), .1);
-    Image<vec3> grey = sky;
-    for (vec3& pixel : grey.pixels) pixel = vec3(pixel.y);
-    EXPECT_LE(error_against(grey, chroma_of(folder, grey, Imf::WRITE_Y)), 1.0 / 2048);
+    Image<vec3> gray = sky;
+    for (vec3& pixel : gray.pixels) pixel = vec3(pixel.y);
+    EXPECT_LE(error_against(gray, chroma_of(folder, gray, Imf::WRITE_Y)), 1.0 / 2048);
 }
 
 TEST(ExrPicture, WindowsLieAnywhere) {

@@ -10,7 +10,7 @@
 namespace tyndall {
 namespace {
 using Texel = std::array<uint8_t, 4>;
-constexpr Texel black{0, 0, 0, 255}, white{255, 255, 255, 255}, red{255, 0, 0, 255}, grey{128, 128, 128, 255},
+constexpr Texel black{0, 0, 0, 255}, white{255, 255, 255, 255}, red{255, 0, 0, 255}, gray{128, 128, 128, 255},
     clear{255, 255, 255, 0};
 
 std::shared_ptr<const Gobo> gobo_of(ivec2 size, const std::vector<Texel>& texels, ColorSpace space = ColorSpace::srgb) {
@@ -49,9 +49,9 @@ TEST(Gobo, StandsAsWhoLooksAlongTheLightSeesIt) {
     expect_near(down.up, vec3(0, 0, -1)), expect_near(down.right, vec3(1, 0, 0));
 }
 
-TEST(Gobo, NumbersAreLightAsTheColourSpaceSays) {
-    EXPECT_NEAR(gobo_at(*gobo_of({1, 1}, {grey}), 0.5, 0.5).x, 0.21586, 1e-5);
-    EXPECT_NEAR(gobo_at(*gobo_of({1, 1}, {grey}, ColorSpace::linear), 0.5, 0.5).x, 128.0 / 255, 1e-6);
+TEST(Gobo, NumbersAreLightAsTheColorSpaceSays) {
+    EXPECT_NEAR(gobo_at(*gobo_of({1, 1}, {gray}), 0.5, 0.5).x, 0.21586, 1e-5);
+    EXPECT_NEAR(gobo_at(*gobo_of({1, 1}, {gray}, ColorSpace::linear), 0.5, 0.5).x, 128.0 / 255, 1e-6);
     EXPECT_EQ(gobo_at(*gobo_of({1, 1}, {clear}), 0.5, 0.5), dvec3(0));
     const auto color = gobo_of({2, 1}, {red, white});
     EXPECT_EQ(color->planes, 3);

@@ -32,7 +32,7 @@ TEST(Cone, KnownLines) {
     EXPECT_TRUE(inside_cone(apex, down, half, {-5, 2, 0}, {1, 0, 0}).empty());            // the mirrored cone
     EXPECT_TRUE(inside_cone(apex, down, half, {-5, -2, 2.5}, {1, 0, 0}).empty());         // beside
     EXPECT_TRUE(inside_cone(apex, down, half, {-5, 0, 0}, {1, 0, 0}).empty());            // touches the apex only
-    // Along a generator, half a metre further in: from where |x| = -y on.
+    // Along a generator, half a meter further in: from where |x| = -y on.
     const dvec3 generator = glm::normalize(dvec3(1, -1, 0));
     const Interval<double> along = inside_cone(apex, down, half, dvec3(0, -0.5, 0), generator);
     EXPECT_NEAR(along.low, -0.25 * std::sqrt(2.0), 1e-9);
@@ -70,7 +70,7 @@ TEST(Cone, EndsAreWhereTheAngleIsHalfTheOpening) {
 }
 
 TEST(Cone, FarFromTheApexNothingCancels) {
-    // A line across a beam of 1° a million metres away from its own origin.
+    // A line across a beam of 1° a million meters away from its own origin.
     const double half = 1 * deg, out = 1e6;
     const Interval<double> stretch = inside_cone({0, 0, 0}, {0, -1, 0}, half, {-out, -10, 0}, {1, 0, 0});
     EXPECT_NEAR(stretch.low, out - 10 * std::tan(half), 1e-8);

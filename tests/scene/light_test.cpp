@@ -15,7 +15,7 @@ TEST(Light, PointFollowsTheInverseSquare) {
     }
 }
 
-TEST(Light, StaysFiniteAtItsCentre) {
+TEST(Light, StaysFiniteAtItsCenter) {
     Light light = point_light(vec3(0), 1);
     EXPECT_FLOAT_EQ(arrival(light, vec3(0)).irradiance.x, 1 / (light.core * light.core));
     EXPECT_NEAR(glm::length(arrival(light, vec3(0)).to_light), 1, 1e-6);

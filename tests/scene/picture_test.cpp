@@ -31,7 +31,7 @@ TEST(ImageFile, RadianceKeepsItsRange) {
 
 // Bytes of an EXR with these pixels in a window of a larger picture.
 std::string openexr_of(const TempFolder& folder, ivec2 display, ivec2 low, const Image<vec3>& pixels,
-                       bool grey = false) {
+                       bool gray = false) {
     const auto file = folder.path() / "picture.exr";
     const ivec2 high = low + pixels.size - 1;
     Imf::Header header(Imath::Box2i({0, 0}, {display.x - 1, display.y - 1}),
@@ -39,7 +39,7 @@ std::string openexr_of(const TempFolder& folder, ivec2 display, ivec2 low, const
     header.compression() = Imf::ZIP_COMPRESSION;
     Imf::FrameBuffer buffer;
     const std::vector<std::string> names =
-        grey ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
+        gray ? std::vector<std::string>{"Y"} : std::vector<std::string>{"R", "G", "B"};
     for (size_t c = 0; c < names.size(); ++c) {
         header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
         auto* values = reinterpret_cast<const char*>(pixels.pixels.data()) + c * sizeof(float);
@@ -69,8 +69,8 @@ TEST(ImageFile, OpenExrFillsItsDisplayWindow) {
     EXPECT_EQ(image.at(3, 1), vec3(0));
     EXPECT_THAT(note, HasSubstr("1 pixels with negative values"));
 
-    const Image<vec3> grey = decode_image(openexr_of(folder, {2, 1}, {0, 0}, pixels, true), "test", note);
-    EXPECT_EQ(grey.at(0, 0), vec3(70000));
+    const Image<vec3> gray = decode_image(openexr_of(folder, {2, 1}, {0, 0}, pixels, true), "test", note);
+    EXPECT_EQ(gray.at(0, 0), vec3(70000));
     const ReducedImage half = decode_reduced(openexr_of(folder, {2, 1}, {0, 0}, pixels), false, 100, 1, "test", note);
     EXPECT_EQ(half.factor, 2);
     EXPECT_EQ(half.image.at(0, 0), vec3(70001, -1.5f, 3.25f) / 4.0f);

@@ -18,7 +18,7 @@ Texture four_texels() {
     return texture;
 }
 
-TEST(Texture, CentresOfTexelsAreExact) {
+TEST(Texture, CentersOfTexelsAreExact) {
     const Texture texture = four_texels();
     expect_near(sample_texture(texture, {0.25f, 0.25f}), {1, 0, 0, 1}, 1e-5f);
     expect_near(sample_texture(texture, {0.75f, 0.25f}), {0, 1, 0, 1}, 1e-5f);
@@ -40,7 +40,7 @@ TEST(Texture, RepeatsMirrorsAndHolds) {
     Texture texture = four_texels();
     expect_near(sample_texture(texture, {3.25f, -6.75f}), {1, 0, 0, 1}, 1e-5f);
     expect_near(sample_texture(texture, {0, 0.25f}), {0.5f, 0.5f, 0, 1},
-                1e-5f); // its left neighbour is the right texel
+                1e-5f); // its left neighbor is the right texel
 
     texture.mirror_u = true;
     expect_near(sample_texture(texture, {1.25f, 0.25f}), {0, 1, 0, 1}, 1e-5f);
@@ -95,7 +95,7 @@ TEST(ImageFile, RefusesWhatItCannotDecode) {
 TEST(ImageFile, HalvedKeepsTheLight) {
     Image<vec4> image({4, 2}, vec4(1, 0, 0, 1));
     for (int y = 0; y < 2; ++y) image.at(2, y) = image.at(3, y) = {0, 0, 1, 0.5f};
-    image.at(3, 0) = {1, 1, 1, 0}; // not seen: its colour must not bleed
+    image.at(3, 0) = {1, 1, 1, 0}; // not seen: its color must not bleed
     const Image<vec4> half = halved(image);
     ASSERT_EQ(half.size, ivec2(2, 1));
     expect_near(half.at(0, 0), {1, 0, 0, 1}, 1e-5f);

@@ -7,7 +7,7 @@
 namespace tyndall::test {
 View view_of(vec3 eye, vec3 target, ivec2 size = {64, 36}, float vertical_fov = 0.8f);
 
-// One ray through the centre of every pixel, up to the first surface or `far`.
+// One ray through the center of every pixel, up to the first surface or `far`.
 std::vector<Ray> pixel_rays(const View& view, const Snapshot& snapshot, float far = 1000);
 
 // Of luminance: the mean, the root mean square of the differences, and that by the mean of the truth.

@@ -31,7 +31,7 @@ Mesh ball(float radius, float top = 0, float bottom = 0, int material = -1) {
     return mesh;
 }
 
-// A lamp above a floor of 6 m, seen by a camera from some metres away; meshes around the lamp are "Globe".
+// A lamp above a floor of 6 m, seen by a camera from some meters away; meshes around the lamp are "Globe".
 Scene lamp_in(Mesh mesh, vec3 eye = vec3(0, 1.5f, 5)) {
     Scene scene;
     scene.materials = {blend_material(0.3f)};

@@ -127,7 +127,7 @@ TEST(FogGrids, ARecipesFireGlowsAsItsFormulaSays) {
     const Snapshot first = make_snapshot(scene, Moment{1, 0});
     ASSERT_EQ(first.media.size(), 2u);
     EXPECT_EQ(first.media[1].name, "fire (blackbody)");
-    for (const vec3 point : {vec3(0.03125f), vec3(0.03125f, 0.34375f, -0.09375f)}) { // centres of voxels
+    for (const vec3 point : {vec3(0.03125f), vec3(0.03125f, 0.34375f, -0.09375f)}) { // centers of voxels
         const double h = point.y / 0.75, r = std::hypot(point.x, point.z) / 0.375 * (1 + h);
         const vec3 expected(0.5 * blackbody_color(BlackbodyKind::kelvin, 1100 + 800 * (1 - h * h - r * r)));
         // Half floats: a kelvin is 1/1900, and luminance goes with its tenth power and more.

@@ -15,7 +15,7 @@ Light light_of(LightKind kind) {
     return light;
 }
 
-TEST(LightRay, HardLightsAreMetAtTheirCentre) {
+TEST(LightRay, HardLightsAreMetAtTheirCenter) {
     const Ray sun = ray_to_light(light_of(LightKind::sun), vec3(7), vec2(0.3f, 0.8f));
     EXPECT_EQ(sun.direction, -light_of(LightKind::sun).direction);
     EXPECT_EQ(sun.t_max, infinity);

@@ -274,7 +274,7 @@ TEST(Snapshot, CamerasAreFoundByName) {
     EXPECT_THROW(camera_at(scene, 0, 0), Error);
 }
 
-TEST(Background, ColourSkyAndPlate) {
+TEST(Background, ColorSkyAndPlate) {
     BackgroundState background;
     background.color = vec3(1, 2, 3);
     background.intensity = 2;

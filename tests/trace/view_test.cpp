@@ -14,7 +14,7 @@ View view_with(PixelFilter filter, int samples, float radius = 1) {
     return view;
 }
 
-TEST(View, OneSampleIsThePixelCentre) {
+TEST(View, OneSampleIsThePixelCenter) {
     for (const PixelFilter filter : {PixelFilter::box, PixelFilter::blackman_harris})
         EXPECT_EQ(sample_point(view_with(filter, 1), ivec2(7, 3), 0).position, vec2(7.5f, 3.5f));
 }
@@ -66,7 +66,7 @@ TEST(View, SamplesHaveTheMomentsOfTheirFilter) {
     }
 }
 
-// Values of a linear ramp: the mean over a pixel is the value at its centre.
+// Values of a linear ramp: the mean over a pixel is the value at its center.
 TEST(View, FewSamplesKeepTheMeanOverManyPixels) {
     const View view = view_with(PixelFilter::blackman_harris, 4);
     vec2 mean(0);

@@ -152,7 +152,7 @@ double height_depth_by_quadrature(const Medium& fog, const Ray& ray) {
         const double t = (i + 0.5) * ray.t_max / pieces, y = ray.origin.y + t * ray.direction.y;
         sum += std::exp(-std::max(y - fog.density.height_base, 0.0) / fog.density.height_falloff);
     }
-    return grey_extinction(fog.optics) * sum * ray.t_max / pieces;
+    return gray_extinction(fog.optics) * sum * ray.t_max / pieces;
 }
 
 TEST(OpticalDepth, HeightFogFromAnywhereToAnywhere) {
@@ -177,7 +177,7 @@ TEST(OpticalDepth, HeightFogWithoutEnd) {
     EXPECT_NEAR(optical_depth(layer, Ray{vec3(0, 50, 0), vec3(0, -1, 0)}), 1 - std::exp(-2.0), 1e-6);
 }
 
-// Voxels are worth half outside the box of their centres: 64 of them make a box from -½ to 63½.
+// Voxels are worth half outside the box of their centers: 64 of them make a box from -½ to 63½.
 const Box box64{vec3(-0.5f), vec3(63.5f)};
 
 TEST(OpticalDepth, ConstantBoxEqualsHomogeneousBox) {
@@ -300,7 +300,7 @@ TEST(OpticalDepth, AxisParallelRaysAreNeverNaN) {
     const Medium media[] = {medium_of(volume_of(ivec3(0), ivec3(23), exact_noise)),
                             homogeneous_medium(1, {vec3(0), vec3(23)}), height_fog(1, 4, 3, {vec3(0), vec3(23)})};
     for (uint32_t i = 0; i < 100000; ++i) {
-        // Grid planes, brick faces, bounds and their neighbours are the places to go wrong.
+        // Grid planes, brick faces, bounds and their neighbors are the places to go wrong.
         vec3 origin = glm::round(random_point(vec3(-2), vec3(26), i, 0));
         if (i % 3 == 0) origin[i / 3 % 3] = std::nextafter(origin[i / 3 % 3], i % 2 ? 100.0f : -100.0f);
         vec3 direction(i % 2 ? 0.0f : -0.0f);

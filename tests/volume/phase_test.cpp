@@ -1,4 +1,4 @@
-// Phase functions: normalised, of the mean cosine they claim, and the same in the vector kernels.
+// Phase functions: normalized, of the mean cosine they claim, and the same in the vector kernels.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "volume/phase_test.cpp"
 #include <hwy/foreach_target.h>

@@ -50,7 +50,7 @@ void draw_stops_legend(ImVec2 low, float width) {
         if (stop < highest_stop)
             list->AddRectFilled({x, top}, {x + step, top + bar}, IM_COL32(color.x, color.y, color.z, 255));
         if (stop % 2 != 0) continue;
-        const std::string text = stop == 0 ? "grey" : formatted("%+d", stop);
+        const std::string text = stop == 0 ? "gray" : formatted("%+d", stop);
         list->AddText({x - 0.5f * ImGui::CalcTextSize(text.c_str()).x, top + bar + pad},
                       ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
     }

@@ -113,9 +113,9 @@ void draw_beam(const ViewState& state, ivec2 size, const LightIcon& icon, const 
     const Camera camera = camera_now(state);
     const double seconds = seconds_of(state);
     const LightPlacement place = light_placement(*state.scene, icon.light, seconds);
-    const float metres = light.target ? glm::distance(light.target->at(seconds), place.position)
+    const float meters = light.target ? glm::distance(light.target->at(seconds), place.position)
                                       : 2 * length * pixel_size(camera, size, icon.place);
-    const std::vector<vec2> ends = beam_ring(camera, size, *state.scene, icon.light, seconds, metres);
+    const std::vector<vec2> ends = beam_ring(camera, size, *state.scene, icon.light, seconds, meters);
     const ImU32 color = IM_COL32(255, 255, 255, 90);
     for (size_t i = 0; i < ends.size(); ++i) {
         ImGui::GetWindowDrawList()->AddLine(zoom(ends[i]), zoom(ends[(i + 1) % ends.size()]), color, 1.2f);

@@ -14,7 +14,7 @@ void heading(const char* text) {
 }
 
 // A label on the left, so that controls line up.
-void labelled(const char* text) {
+void labeled(const char* text) {
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(text);
     ImGui::SameLine(0.46f * ImGui::GetWindowWidth());
@@ -33,7 +33,7 @@ void draw_modes(const ViewState& state, const Act& act) {
         ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
         ImGui::TextDisabled("%s", promise.c_str());
     }
-    labelled("compare with");
+    labeled("compare with");
     if (ImGui::BeginCombo("##beside", state.beside.empty() ? "nothing" : state.beside.c_str())) {
         if (ImGui::Selectable("nothing", state.beside.empty())) act({Verb::beside, {}, {}, {}});
         const std::string reference(reference_name);
@@ -44,14 +44,14 @@ void draw_modes(const ViewState& state, const Act& act) {
         ImGui::EndCombo();
     }
     if (!state.beside.empty()) {
-        labelled("layout");
+        labeled("layout");
         if (ImGui::BeginCombo("##arranged", state.shown.side_by_side ? "side by side" : "wipe")) {
             if (ImGui::Selectable("wipe", !state.shown.side_by_side)) act({Verb::arrange, {"wipe"}, {}, {}});
             if (ImGui::Selectable("side by side", state.shown.side_by_side)) act({Verb::arrange, {"side"}, {}, {}});
             ImGui::EndCombo();
         }
     }
-    labelled("quality");
+    labeled("quality");
     if (ImGui::BeginCombo("##quality", std::string(name_of(state.quality)).c_str())) {
         for (const Quality quality : {Quality::draft, Quality::preview, Quality::final, Quality::reference})
             if (ImGui::Selectable(std::string(name_of(quality)).c_str(), quality == state.quality))
@@ -62,7 +62,7 @@ void draw_modes(const ViewState& state, const Act& act) {
 
 // Exposure in stops, to drag or type, and a button for automatic exposure.
 void draw_exposure(const ViewState& state, const Act& act) {
-    labelled("exposure");
+    labeled("exposure");
     if (!state.scene) return ImGui::NewLine();
     float exposure = static_cast<float>(exposure_now(state).value_or(0.0));
     const bool measured = !state.shown.exposure && !shows_scene_exposure(state);
@@ -80,7 +80,7 @@ void draw_exposure(const ViewState& state, const Act& act) {
 
 void draw_shown(const ViewState& state, const Act& act) {
     heading("Image");
-    labelled("show");
+    labeled("show");
     const auto& names = shown_layer_names();
     if (ImGui::BeginCombo("##show", names[static_cast<size_t>(state.shown.layer)].c_str())) {
         for (const std::string& name : names)
@@ -89,7 +89,7 @@ void draw_shown(const ViewState& state, const Act& act) {
         ImGui::EndCombo();
     }
     draw_exposure(state, act);
-    labelled("view transform");
+    labeled("view transform");
     if (ImGui::BeginCombo("##view transform", name_of(state.shown.transform).c_str())) {
         for (const std::string& name : view_transform_names())
             if (ImGui::Selectable(name.c_str(), name == name_of(state.shown.transform)))

@@ -35,7 +35,7 @@ Run add_info(const Command& program) {
         .required();
     command.footer("Example: the grids of a volume, their size in the world and how dense they are\n"
                    "  tyndall info fog.0001.vdb\n"
-                   "With --json the same for scripts; lengths in metres, light in candela and lux.");
+                   "With --json the same for scripts; lengths in meters, light in candela and lux.");
     return [file](const Globals& globals) {
         print_report(report_of(*file, globals.json));
         return 0;

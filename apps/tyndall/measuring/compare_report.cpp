@@ -93,8 +93,8 @@ std::string compare_text(const CompareResult& result) {
     std::string text = printable(result.test) + " against " + printable(result.reference) +
                        formatted(": %d x %d pixels", result.size.x, result.size.y);
     text += result.sequence ? ", " + count_text(result.frames.size(), "frame") + "\n" : std::string("\n");
-    if (all.stylised)
-        text += "stylised: rendered with artistic controls, so these are differences of look, not errors\n";
+    if (all.stylized)
+        text += "stylized: rendered with artistic controls, so these are differences of look, not errors\n";
     text += errors_table(all.beauty);
     text += formatted("\n  %-16s %12.4g   without the largest 0.1 %%: %.4g\n", "relMSE", all.beauty.rel_mse,
                       all.beauty.rel_mse_trimmed);
@@ -129,7 +129,7 @@ std::string compare_json(const CompareResult& result, const std::vector<Exceeded
                         {"reference", result.reference},
                         {"size", result.size},
                         {"pixels", e.pixels},
-                        {"stylised", result.overall.stylised},
+                        {"stylized", result.overall.stylized},
                         {"non_finite", non_finite_json(e)},
                         {"mean", e.mean_test},
                         {"mean_reference", e.mean_reference},

@@ -275,7 +275,7 @@ Run add_render(const Command& program) {
     command.footer("Example: the first second at full HD, with PNGs to look at\n"
                    "  tyndall render scenes/window.json -o out/window.####.exr --frames 1-24 --res 1920x1080 --png\n"
                    "A quick look first: --quality draft --res 480x270 --frames 1\n"
-                   "Light is in candela and lux, lengths in metres, colors linear Rec.709.");
+                   "Light is in candela and lux, lengths in meters, colors linear Rec.709.");
     return [args](const Globals& globals) { return run_render(*args, globals); };
 }
 }

@@ -26,7 +26,7 @@ void look_at(const FieldLight& light, const Medium& field, const Ray& ray, std::
     const Vec3s emission = emission16(field.optics.emission, point);
     Floats extinction = 0.0f;
     for (const Medium& medium : light.fog)
-        extinction = fma(density16(medium, point), grey_extinction(medium.optics), extinction);
+        extinction = fma(density16(medium, point), gray_extinction(medium.optics), extinction);
     store(emission.x, v[0]), store(emission.y, v[1]), store(emission.z, v[2]), store(extinction, v[3]);
     for (size_t i = 0; i < nodes.size(); ++i) result[i] = {vec3(v[0][i], v[1][i], v[2][i]), v[3][i]};
 }

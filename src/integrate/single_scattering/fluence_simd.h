@@ -19,7 +19,7 @@ constexpr double max_parts = 4096;   // per piece
 double extinction_at(const SingleScattering& frame, vec3 point) {
     double extinction = 0;
     for (const Medium& medium : frame.snapshot.media)
-        extinction += double(grey_extinction(medium.optics)) * density_at(medium, point);
+        extinction += double(gray_extinction(medium.optics)) * density_at(medium, point);
     return extinction * frame.style.view_depth;
 }
 

@@ -126,7 +126,7 @@ void sample_depths(Packet& packet) {
         const Vec3s point = fma(direction, (from + to) * 0.5f, origin);
         Floats extinction = 0.0f;
         for (size_t m = 0; m < media.size(); ++m) {
-            const Floats own = density16(media[m], point) * grey_extinction(media[m].optics);
+            const Floats own = density16(media[m], point) * gray_extinction(media[m].optics);
             store(own, scratch.extinction.data() + 16 * ((k - 1) * media.size() + m));
             extinction = extinction + own;
         }

@@ -91,7 +91,7 @@ HWY_INLINE Vec3s scattered(const Packet& packet, size_t index, const Vec3s& posi
     }
     const std::vector<Medium>& media = frame.snapshot.media;
     const Vec3s towards = scattering(media, position, dot(light_at.to_light, direction), [&](size_t m) HWY_ATTR {
-        return density16(media[m], position) * grey_extinction(media[m].optics);
+        return density16(media[m], position) * gray_extinction(media[m].optics);
     });
     return scattered_light(light, frame.depths[index], position, amount, towards);
 }
@@ -104,11 +104,11 @@ HWY_INLINE Vec3s other_source(const SingleScattering& frame, int light, const Ve
         const Optics& optics = medium.optics;
         const vec3 emission = light == ambient_light ? vec3(0) : optics.emission.radiance;
         if (optics.albedo_field) {
-            const Vec3s scattered = albedo16(optics, position) * splat(grey_extinction(optics) * ambient);
+            const Vec3s scattered = albedo16(optics, position) * splat(gray_extinction(optics) * ambient);
             sum = fma(scattered + splat(emission), density16(medium, position), sum);
             continue;
         }
-        const vec3 per_density = grey_extinction(optics) * optics.albedo * ambient + emission;
+        const vec3 per_density = gray_extinction(optics) * optics.albedo * ambient + emission;
         sum = fma(splat(per_density), density16(medium, position), sum);
     }
     return sum;
@@ -118,7 +118,7 @@ HWY_INLINE Vec3s other_source(const SingleScattering& frame, int light, const Ve
 HWY_INLINE Vec3s multiply_scattered(const SingleScattering& frame, const Vec3s& position, const Vec3s& direction) {
     const std::vector<Medium>& media = frame.snapshot.media;
     return scattered_fluence(*frame.fluence, media, position, direction, [&](size_t m) HWY_ATTR {
-        return density16(media[m], position) * grey_extinction(media[m].optics);
+        return density16(media[m], position) * gray_extinction(media[m].optics);
     });
 }
 

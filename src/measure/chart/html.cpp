@@ -179,7 +179,7 @@ std::string method(const Chart& chart) {
         "shown as rendered, and again, dashed and hollow, with their fog light scaled by the best-fitting factor.",
         "<code>path</code> scatters light once here and is measured by the light of lamps and suns; ambient light, "
         "which it shadows and the reference does not, is excluded on both sides.",
-        "The grey steps join the settings that no other beats in both time and error. Whiskers: the fastest and the "
+        "The gray steps join the settings that no other beats in both time and error. Whiskers: the fastest and the "
         "slowest run; two standard deviations of the uncertainty from the reference's noise."};
     std::string list;
     for (const std::string& text : lines) list += element("li", text);

@@ -172,7 +172,7 @@ RayReport explain_ray(const View& view, const Snapshot& snapshot, const Settings
                       const ExplainOptions& options) {
     const Settings truth = truth_for(snapshot, settings, options.light_points);
     RayScene scene{
-        centered(view), snapshot, settings, truth, with_terms(stylised(snapshot, truth.style), truth.terms), {},
+        centered(view), snapshot, settings, truth, with_terms(stylized(snapshot, truth.style), truth.terms), {},
         options};
     add_depths(scene);
     RayReport report;

@@ -89,10 +89,10 @@ RayStep step_at(const RayScene& scene, const RaySegment& segment, const FogOnSeg
     for (size_t m = 0; m < place.densities.size(); ++m) {
         const Optics& optics = scene.fog.media[m].optics;
         const vec3 middle = segment.ray.at(static_cast<float>(place.middle()));
-        step.extinction += place.densities[m] * grey_extinction(optics);
+        step.extinction += place.densities[m] * gray_extinction(optics);
         step.glow += only_emits(optics) ? emission_at(scene.fog.media[m], middle)
                                         : static_cast<float>(place.densities[m]) *
-                                              (grey_extinction(optics) * albedo_at(optics, middle) * scene.fog.ambient +
+                                              (gray_extinction(optics) * albedo_at(optics, middle) * scene.fog.ambient +
                                                optics.emission.radiance);
     }
     const double before = on.depth_to(place.low), across = style.view_depth * step.extinction * length;
@@ -141,7 +141,7 @@ vec3 scattered(const RayScene& scene, const LightAlong& along, const RaySegment&
     dvec3 sum(0);
     for (size_t m = 0; m < place.densities.size(); ++m) {
         const Optics& optics = scene.fog.media[m].optics;
-        sum += place.densities[m] * grey_extinction(optics) * phase_value_of<double>(optics.phase, cosine) *
+        sum += place.densities[m] * gray_extinction(optics) * phase_value_of<double>(optics.phase, cosine) *
                dvec3(albedo_at(optics, segment.ray.at(static_cast<float>(place.middle()))));
     }
     return vec3(arriving.amount * sum * arriving.tint * dvec3(along.light->intensity * along.light->volume_scale));

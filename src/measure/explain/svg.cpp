@@ -109,7 +109,7 @@ void draw_light(const RayReport& report, std::span<const size_t> lights, double 
     const double scale = light_scale(report, most);
     const Panel panel{top, top + 150, range, scale};
     std::string title =
-        "Light scattered here that arrives at the camera, nits per metre (grey: ambient light and emission)";
+        "Light scattered here that arrives at the camera, nits per meter (gray: ambient light and emission)";
     if (most > 1.1 * scale) title += formatted("; clipped, up to %.3g", most);
     draw_axes(panel, title, false, false, svg);
     svg.path(curve(report, panel, [&](size_t s) { return eye_luminance(report.steps[s], report.steps[s].glow); }),

@@ -76,7 +76,7 @@ std::string steps_text(const RayReport& report) {
     for (const size_t l : lights)
         text += formatted(both ? " %17s" : " %8s", cut(printable(report.lights[l].name, 40), both ? 17 : 8).c_str());
     if (!lights.empty()) text += "\n";
-    text += formatted("  %8s %8s %9s %8s %8s %10s %10s", "from, m", "to, m", "fog, 1/m", "depth", "to eye", "per metre",
+    text += formatted("  %8s %8s %9s %8s %8s %10s %10s", "from, m", "to, m", "fog, 1/m", "depth", "to eye", "per meter",
                       "arrives");
     for (size_t l = 0; l < lights.size(); ++l) text += formatted(both ? " %8s %8s" : " %8s", "lit", "to light");
     text += "\n";

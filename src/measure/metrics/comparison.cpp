@@ -71,7 +71,7 @@ uint64_t Comparison::non_finite() const {
 Comparison compare(const ExrColors& test, const ExrColors& reference, const Viewing& viewing, Image<float>* flip_map) {
     check_same_frame(test, reference);
     Comparison result;
-    result.stylised = test.stylised || reference.stylised;
+    result.stylized = test.stylized || reference.stylized;
     result.beauty = measure_errors(test.beauty, reference.beauty);
     for (const auto& [name, image] : reference.layers)
         if (const Image<vec3>* own = test.layer(name); own && !is_statistic(name))
@@ -93,7 +93,7 @@ Comparison pooled(std::span<const Comparison> frames) {
     const bool noisy = std::ranges::all_of(frames, [](const Comparison& frame) { return frame.noise.has_value(); });
     for (const Comparison& frame : frames) {
         errors.push_back(frame.beauty);
-        all.stylised |= frame.stylised;
+        all.stylized |= frame.stylized;
         noise += std::pow(frame.noise.value_or(0), 2) / static_cast<double>(frames.size());
         all.flip_ldr += frame.flip_ldr / static_cast<double>(frames.size());
         all.ssim += frame.ssim / static_cast<double>(frames.size());

@@ -24,7 +24,7 @@ Viewing covering(std::span<const Viewing> frames);
 struct Comparison {
     Errors beauty;
     std::vector<std::pair<std::string, Errors>> layers; // those both files have, by name
-    bool stylised = false;                              // one of the two is: differences in look, not errors
+    bool stylized = false;                              // one of the two is: differences in look, not errors
     double ssim = 0, flip = 0, flip_ldr = 0; // flip: over all exposures; flip_ldr: as stored, clamped to 0..1
     // Root mean square of the image's own standard errors, when it has a layer Variance: the noise in rmse.
     std::optional<double> noise;

@@ -53,12 +53,12 @@ ExrColors read_exr_colors(const std::filesystem::path& file) {
 
     ExrColors picture;
     picture.file = file.string(), picture.display = exr.display, picture.low = exr.low;
-    const auto style = exr.attributes.find("stylised");
-    picture.stylised = style != exr.attributes.end() && style->second != "0";
+    const auto style = exr.attributes.find("stylized");
+    picture.stylized = style != exr.attributes.end() && style->second != "0";
     const Channels& own = layers[""];
-    picture.grey = !is_color(own);
-    if (picture.grey && !own.contains("Y")) refuse_colorless(picture.file, layers);
-    picture.beauty = picture.grey ? combined(*own.at("Y"), *own.at("Y"), *own.at("Y")) : color_of(own);
+    picture.gray = !is_color(own);
+    if (picture.gray && !own.contains("Y")) refuse_colorless(picture.file, layers);
+    picture.beauty = picture.gray ? combined(*own.at("Y"), *own.at("Y"), *own.at("Y")) : color_of(own);
 
     for (const auto& [name, channels] : layers) {
         if (name.empty()) continue;
@@ -78,8 +78,8 @@ void check_same_frame(const ExrColors& test, const ExrColors& reference) {
     if (test.low != reference.low || test.beauty.size != reference.beauty.size)
         refuse(test.file, "contains the crop " + window_text(test) + ", " + other + " the crop " +
                               window_text(reference) + "; render both with the same --crop");
-    if (test.grey != reference.grey)
-        refuse(test.file, std::string(test.grey ? "has luminance only, " : "has color, ") + other +
-                              (test.grey ? " has color" : " has luminance only"));
+    if (test.gray != reference.gray)
+        refuse(test.file, std::string(test.gray ? "has luminance only, " : "has color, ") + other +
+                              (test.gray ? " has color" : " has luminance only"));
 }
 }

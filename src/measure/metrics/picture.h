@@ -10,8 +10,8 @@ namespace tyndall {
 struct ExrColors {
     std::string file;
     ivec2 display{0}, low{0}; // display window's size; where the pixels lie in it
-    bool grey = false;        // the file has luminance (Y) only
-    bool stylised = false;    // made with artistic controls: differences say nothing about accuracy
+    bool gray = false;        // the file has luminance (Y) only
+    bool stylized = false;    // made with artistic controls: differences say nothing about accuracy
     Image<vec3> beauty;
     // By name: NAME.R/G/B as colors, layers of one channel (transmittance.T) as gray.
     std::map<std::string, Image<vec3>> layers;

@@ -9,7 +9,7 @@ namespace tyndall {
 namespace {
 constexpr int window_radius = 5;
 constexpr double window_sigma = 1.5, k1 = 0.01, k2 = 0.03;
-constexpr double middle_grey = 0.18, darkest_mean = 1e-3;
+constexpr double middle_gray = 0.18, darkest_mean = 1e-3;
 
 std::vector<double> window_weights() {
     std::vector<double> weights;
@@ -56,7 +56,7 @@ double mean_luminance(const Image<vec3>& image) {
 }
 
 double ssim(const Image<vec3>& test, const Image<vec3>& reference, double mean) {
-    const double gain = mean > 0 ? middle_grey / mean : 1;
+    const double gain = mean > 0 ? middle_gray / mean : 1;
     Image<double> t(test.size), r(test.size);
     for (size_t i = 0; i < t.pixels.size(); ++i) {
         if (!comparable(test.pixels[i], reference.pixels[i])) continue;

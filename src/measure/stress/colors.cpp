@@ -25,9 +25,9 @@ MediumSource colored(vec3 extinction, float half = 1) {
     source.extinction = (extinction.x + extinction.y + extinction.z) / 3, source.channel_extinction = extinction;
     return source;
 }
-MediumSource grey(float extinction, float half) {
+MediumSource gray(float extinction, float half) {
     MediumSource source;
-    source.name = "grey", source.bounds = {vec3(-half), vec3(half)}, source.extinction = extinction;
+    source.name = "gray", source.bounds = {vec3(-half), vec3(half)}, source.extinction = extinction;
     return source;
 }
 
@@ -47,8 +47,8 @@ StressScene spread(double ratio) {
 StressScene lamp_in_it(double extinction) {
     return with_fog({colored({0.1f, 0.2f, static_cast<float>(extinction)}, 3)}, point_light({0.8f, 0.6f, 0.4f}, 10));
 }
-StressScene in_grey(double extinction) {
-    return with_fog({grey(static_cast<float>(extinction), 2), colored({0.8f, 0.3f, 0.1f})}, noon);
+StressScene in_gray(double extinction) {
+    return with_fog({gray(static_cast<float>(extinction), 2), colored({0.8f, 0.3f, 0.1f})}, noon);
 }
 StressScene shaft(double slit) {
     const float half = 0.5f * static_cast<float>(slit);
@@ -85,8 +85,8 @@ std::vector<StressCase> stress_colors() {
                    excuses, spread, usual),
         StressCase("colored-lamp", group, "a lamp in fog whose blue gets thick", "extinction", "1/m", {0.2, 1, 3},
                    Claim::physical, excuses, lamp_in_it, usual),
-        StressCase("colored-in-grey", group, "colored fog within grey fog", "extinction", "1/m", {0.05, 0.3, 1},
-                   Claim::physical, excuses, in_grey, usual),
+        StressCase("colored-in-gray", group, "colored fog within gray fog", "extinction", "1/m", {0.05, 0.3, 1},
+                   Claim::physical, excuses, in_gray, usual),
         StressCase("colored-shaft", group, "a shaft in colored fog gets narrow", "slit", "m", {2, 0.5, 0.1},
                    Claim::physical, excuses, shaft, usual),
         StressCase("colored-transmittance", group, "each channel of the background fades by its own optical depth",

@@ -155,7 +155,7 @@ std::vector<StressCase> stress_data() {
         StressCase("skewed-grid", group, "a grid stretched, sheared and mirrored", "shear", "", {0, 0.5, 2, -0.5, -2},
                    seen_modes, detail, skewed,
                    {0.02, "relative RMSE of the fog's opacity against the closed form", depth_off}),
-        StressCase("voxel-size", group, "voxels from micrometres to kilometres", "size", "times",
+        StressCase("voxel-size", group, "voxels from micrometers to kilometers", "size", "times",
                    {10, 1e-3, 1e-4, 1e3, 1e5}, seen_modes, {}, of_size,
                    {0.01, "relative RMSE against the usual size", size_off}),
         StressCase("voxel-doubling", group, "voxels doubled and halved: no rounding, the same bits", "size", "times",

@@ -28,7 +28,7 @@ StressScene board(int squares, vec3 color) {
     const Light spot = spot_light({-0.8f, 2, 0}, {0.4f, -1, 0.1f}, 20, 0.35f, 0.4f);
     return stress_scene({haze()}, {filtered_light(spot, nullptr, board_gobo(squares, 4, color, vec3(0.05f)))}, beside);
 }
-StressScene grey_board(double squares) { return board(static_cast<int>(squares), vec3(1)); }
+StressScene gray_board(double squares) { return board(static_cast<int>(squares), vec3(1)); }
 StressScene colored_board(double squares) { return board(static_cast<int>(squares), {1, 0.4f, 0.1f}); }
 }
 
@@ -38,7 +38,7 @@ std::vector<StressCase> stress_filters() {
         StressCase("narrow-profile", group, "an IES profile gets narrow", "power of the cosine", "", {1, 8, 64, 512},
                    Claim::physical, edges, narrow_profile),
         StressCase("gobo", group, "the squares of a gobo get small", "squares across", "", {2, 4, 8, 16},
-                   Claim::physical, edges, grey_board),
+                   Claim::physical, edges, gray_board),
         StressCase("colored-gobo", group, "the same in colors", "squares across", "", {2, 8}, Claim::physical, edges,
                    colored_board),
     };

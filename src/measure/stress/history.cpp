@@ -289,7 +289,7 @@ std::vector<StressCase> stress_history() {
                    Claim::physical, {}, deep),
         StressCase("near-wall", group, "a wall comes near: no half slice is lost", "distance", "m", {4, 1, 0.2, 0.03},
                    Claim::physical, {}, near_wall, {0.03, to_truth, nullptr, 2e-3, "march froxel shadow-volume cone"}),
-        StressCase("nudge", group, "the camera moves a centimetre in thick fog", "extinction", "1/m", {0.1, 1, 5, 20},
+        StressCase("nudge", group, "the camera moves a centimeter in thick fog", "extinction", "1/m", {0.1, 1, 5, 20},
                    Claim::noise_free, blurred, thick_around, {0.01, "change of the mean beyond the truth's", nudge}),
     };
 }

@@ -68,7 +68,7 @@ std::vector<StressCase> stress_lobes() {
                    {0.02, 0.2, 0.6}, Claim::physical, excuses, rayleigh, usual),
         StressCase("draine-lamp", group, "a lamp through a Draine lobe that gets narrow", "g", "", {0.2, 0.7, 0.95},
                    Claim::physical, excuses, draine, usual),
-        StressCase("droplets-lamp", group, "a lamp through droplets of growing size", "diameter", "micrometres",
+        StressCase("droplets-lamp", group, "a lamp through droplets of growing size", "diameter", "micrometers",
                    {5, 15, 50}, Claim::physical, excuses, droplets, usual),
         StressCase("two-lobes-lamp", group, "a lamp through two lobes", "share of the forward lobe", "", {0, 0.5, 1},
                    Claim::physical, excuses, lobes_of_lamp, usual),
@@ -78,7 +78,7 @@ std::vector<StressCase> stress_lobes() {
                    {40, 10, 2}, Claim::physical, excuses, spike_of_lamp, usual),
         StressCase("spike-sun", group, "the sun through a table whose spike gets narrow", "spike", "degrees",
                    {40, 10, 2}, Claim::physical, excuses, spike_of_sun, usual),
-        StressCase("droplets-shaft", group, "droplets of growing size in a shaft", "diameter", "micrometres",
+        StressCase("droplets-shaft", group, "droplets of growing size in a shaft", "diameter", "micrometers",
                    {5, 15, 50}, Claim::physical, excuses, droplets_in_shaft, usual),
     };
 }

@@ -188,7 +188,7 @@ std::vector<StressCase> stress_looks() {
                    {1.5, "brightest pixel / that seen from afar", much_brighter}),
         StressCase("card-meets-table", group, "a table top rises into a beam: its card has no hard cut", "height", "m",
                    {0.5, 1, 1.5, 2}, "billboard", {}, table,
-                   {0.02, "change over a centimetre / mean without it", table_pops}),
+                   {0.02, "change over a centimeter / mean without it", table_pops}),
     };
 }
 }

@@ -88,11 +88,11 @@ Mesh turned(Mesh mesh, float angle) {
 StressScene under_floor(float thickness, float angle) {
     const vec3 down(std::sin(angle), -std::cos(angle), 0);
     const Mesh floor = turned(box_of({-4, -thickness, -4}, {4, 0, 4}, 0), angle);
-    Material grey;
-    grey.base_color = vec3(0.5f);
+    Material gray;
+    gray.base_color = vec3(0.5f);
     return with_grid(stress_scene({homogeneous_medium(0.5f, {vec3(-1), vec3(1)})}, {sun_light({0, -1, 0}, 10)},
                                   look_at((thickness + 0.05f) * down, 2.0f * down, vec3(0, 0, 1), 0.7f), {floor},
-                                  {grey}));
+                                  {gray}));
 }
 StressScene under_thin_floor(double thickness) { return under_floor(static_cast<float>(thickness), 0); }
 StressScene under_sloping_floor(double degrees) { return under_floor(0.02f, static_cast<float>(degrees) * pi / 180); }
@@ -112,7 +112,7 @@ std::vector<StressCase> stress_orders() {
                    {0.05, 0.2, 0.5, 1, 3, 10}, Claim::fluence, {}, white_with_grid, mean),
         StressCase("added-lobe", group, "fog with a backward to forward lobe, with such a grid", "g", "",
                    {-0.5, 0, 0.5, 0.9}, Claim::fluence, {}, lobe_with_grid, mean),
-        StressCase("added-colour", group, "colored fog, with such a grid", "albedo", "", {0, 0.3, 0.9, 1},
+        StressCase("added-color", group, "colored fog, with such a grid", "albedo", "", {0, 0.3, 0.9, 1},
                    Claim::fluence, {}, dull_with_grid, mean),
         StressCase("added-lamp", group, "a lamp in fog that gets thick, with such a grid", "optical depth", "",
                    {0.2, 1, 3}, Claim::fluence, {}, lamp_with_grid, mean),

@@ -84,7 +84,7 @@ double not_linear(Trial& trial) {
     return difference(layers, trial.render());
 }
 
-StressScene two_colours(double) {
+StressScene two_colors(double) {
     Light blue = spot_light({0, 1.5f, 0}, {0.2f, -1, 0}, 5, 0.4f, 0.6f);
     blue.intensity = vec3(0.2f, 0.5f, 5), blue.radius = 0.05f;
     return stress_scene({homogeneous_medium(0.4f, unit, forward_phase(0.5f), vec3(0.9f, 0.6f, 0.3f))}, {noon, blue},
@@ -116,7 +116,7 @@ std::vector<StressCase> stress_scattering() {
         StressCase("phase-kinds", group, "phase functions of every kind", "kind", "", {0, 1, 2, 3, 4, 5, 6, 7, 8},
                    Claim::physical, {}, kinds),
         StressCase("droplets", group, "looking past the sun through droplets of growing size", "diameter",
-                   "micrometres", {5, 10, 20, 50}, Claim::physical, {}, towards_sun_in_droplets,
+                   "micrometers", {5, 10, 20, 50}, Claim::physical, {}, towards_sun_in_droplets,
                    {0.05, "error of the mean", error_of_mean}),
         StressCase("even-light", group, "fog in uniform light from all directions", "optical depth", "", {0.1, 1, 8},
                    Claim::noise_free, {}, in_even_light,
@@ -124,7 +124,7 @@ std::vector<StressCase> stress_scattering() {
         StressCase("linear", group, "twice the light is twice the image", "sun", "times", {2, 1e-6, 1e6, 1e12},
                    Claim::noise_free, {}, dim_or_bright,
                    {1e-4, "relative RMSE of the image / strength of the light", not_linear}),
-        StressCase("light-layers", group, "the lights' layers add up", "frame", "", {0}, Claim::all, {}, two_colours,
+        StressCase("light-layers", group, "the lights' layers add up", "frame", "", {0}, Claim::all, {}, two_colors,
                    {1e-5, "relative RMSE of the sum", sum_off}),
     };
 }

@@ -252,7 +252,7 @@ std::vector<StressCase> stress_shadows() {
                    Claim::shadows | Claim::noise_free, {}, one_blocker, {1e-3, "relative RMSE against one", stack_off}),
         StressCase("eye-in-shadow", group, "the camera is in a shadow", "below the blocker", "m", {3, 1, 0.3, 0.01},
                    Claim::physical, {sun_unseen}, eye_in_shadow, sharp),
-        StressCase("size", group, "shadows a thousand kilometres long", "blocker", "m", {1, 1e-3, 1e3, 1e6},
+        StressCase("size", group, "shadows a thousand kilometers long", "blocker", "m", {1, 1e-3, 1e3, 1e6},
                    Claim::shadows, {}, long_shadow, sharp),
         StressCase("dark-room", group, "the sun does not get through thin walls", "wall", "m", {0.5, 0.1, 0.02, 0.005},
                    Claim::shadows, {}, dark_room, {1e-3, "light inside / light without walls", leak}),

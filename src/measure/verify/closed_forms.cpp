@@ -48,7 +48,7 @@ void check_phase_shapes(Checks& checks) {
             0, 1);
     };
     for (const double diameter : {0.05, 1.0, 3.0, 5.0, 10.0, 20.0, 50.0}) {
-        const std::string name = "droplets of " + shortest_text(diameter) + " micrometres";
+        const std::string name = "droplets of " + shortest_text(diameter) + " micrometers";
         checks.add(name + " integrate to 1", moment(mie_phase(diameter), 0), 1, 1e-6, "1e-6");
         checks.add(name + ", mean cosine", moment(mie_phase(diameter), 1), mean_cosine(mie_phase(diameter)), 1e-6,
                    "1e-6");

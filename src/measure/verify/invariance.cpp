@@ -69,9 +69,9 @@ void check_grids(Checks& checks) {
 // A room with a slatted window, sun, a spot and rough fog.
 Scene slatted_room() {
     Scene scene;
-    Material grey;
-    grey.base_color = vec3(0.5f, 0.45f, 0.4f);
-    scene.materials = {grey};
+    Material gray;
+    gray.base_color = vec3(0.5f, 0.45f, 0.4f);
+    scene.materials = {gray};
     const auto add = [&](vec3 low, vec3 high) {
         scene.meshes.push_back(box_of(low, high, 0));
         scene.instances.push_back({-1, static_cast<int>(scene.meshes.size()) - 1});

@@ -37,7 +37,7 @@ Vec3s beam_light(const Billboards& billboards, const CardQuad& quad, const CardH
     Floats extinction = 0.0f, depth = 0.0f;
     const std::vector<Medium>& media = billboards.snapshot.media;
     const Vec3s scattered = scattering(media, dot(to_light.direction, packet.direction), [&](size_t m) HWY_ATTR {
-        const Floats here = density16(media[m], hit.point) * grey_extinction(media[m].optics);
+        const Floats here = density16(media[m], hit.point) * gray_extinction(media[m].optics);
         extinction = extinction + here;
         return here;
     });

@@ -41,7 +41,7 @@ BeamCard card_of(const Openings& openings, const std::vector<int>& opening) {
     for (const int i : opening) {
         position += view.position(i), from += cells[i].from, to += cells[i].to;
         for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-            const int next = view.neighbour(i, dx, dy);
+            const int next = view.neighbor(i, dx, dy);
             if (next >= 0 && cells[next].opening == unlit && cells[next].hit > 0 && cells[next].hit < cells[i].hit)
                 edge += cells[next].hit, ++edges;
         }

@@ -100,7 +100,7 @@ Billboards make_billboards(const View& view, const Snapshot& snapshot, const Set
     for (float& veil : billboards.veils)
         veil *= settings.of<BillboardSettings>().veil * settings.of<BillboardSettings>().brightness;
     billboards.settings = settings.of<BillboardSettings>(), billboards.style = settings.style;
-    billboards.snapshot = stylised(snapshot, settings.style);
+    billboards.snapshot = stylized(snapshot, settings.style);
     average_filters(billboards.snapshot);
     billboards.snapshot.media = homogeneous_media(billboards.snapshot.media);
     billboards.camera = view.camera;

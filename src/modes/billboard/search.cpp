@@ -22,7 +22,7 @@ std::vector<std::vector<int>> openings(const LightView& view, std::vector<Cell>&
         cells[seed].opening = static_cast<int>(found.size());
         for (size_t k = 0; k < members.size(); ++k)
             for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
-                const int next = view.neighbour(members[k], dx, dy);
+                const int next = view.neighbor(members[k], dx, dy);
                 if (next < 0 || cells[next].opening != unlit || !is_lit(next)) continue;
                 cells[next].opening = static_cast<int>(found.size());
                 members.push_back(next);

@@ -13,9 +13,9 @@ struct LightView {
     float reach = 0;                 // length of the rays
 
     Ray ray(int cell) const;
-    vec3 position(int cell) const;                 // of a cell: on the grid's plane (sun) or the unit sphere
-    int neighbour(int cell, int dx, int dy) const; // -1 = none
-    float cell_size() const;                       // meters (sun) or radians
+    vec3 position(int cell) const;                // of a cell: on the grid's plane (sun) or the unit sphere
+    int neighbor(int cell, int dx, int dy) const; // -1 = none
+    float cell_size() const;                      // meters (sun) or radians
 };
 // `level`: rows of a sun's grid are horizontal.
 LightView light_view(const Light& light, const Snapshot& snapshot, int n, bool level);

@@ -51,7 +51,7 @@ float LightView::cell_size() const {
     return (is_distant(*light) ? side : 2 * side) / static_cast<float>(n);
 }
 
-int LightView::neighbour(int cell, int dx, int dy) const {
+int LightView::neighbor(int cell, int dx, int dy) const {
     int x = cell % n + dx, y = cell / n + dy;
     const bool beside = x < 0 || x >= n, above = y < 0 || y >= n;
     if (!beside && !above) return y * n + x;

@@ -114,7 +114,7 @@ ConeLight cone_light(const Light& light, const Snapshot& snapshot, const Cone& c
 
 float AnchoredFog::extinction() const {
     float sum = 0;
-    for (const Medium& medium : media) sum += grey_extinction(medium.optics);
+    for (const Medium& medium : media) sum += gray_extinction(medium.optics);
     return sum;
 }
 
@@ -122,7 +122,7 @@ float filter_node_angle(const Light& light) { return cone_angle(light) / (8 * fi
 
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
     Snapshot seen =
-        with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)));
+        with_fire_lamps(with_mean_environment(with_terms(stylized(snapshot, settings.style), settings.terms)));
     seen = with_mesh_lamps(std::move(seen), settings.terms.emission);
     Cone cone;
     cone.settings = settings.of<ConeSettings>(), cone.style = settings.style, cone.eye = view.camera.position;

@@ -86,7 +86,7 @@ HWY_INLINE Floats view_depth(const Packet& packet, const Floats& t) {
         const Medium& medium = packet.fog.media[m];
         const Floats from = load(packet.scratch.from[m].data());
         const Floats to = min(t, load(packet.scratch.to[m].data()));
-        Floats depth = max(to - from, 0.0f) * grey_extinction(medium.optics);
+        Floats depth = max(to - from, 0.0f) * gray_extinction(medium.optics);
         if (medium.density.kind == DensityKind::height) {
             const Floats y0 = fma(packet.direction.y, from, packet.origin.y);
             const Floats y1 = fma(packet.direction.y, to, packet.origin.y);
@@ -101,7 +101,7 @@ HWY_INLINE Floats view_depth(const Packet& packet, const Floats& t) {
 HWY_INLINE Floats extinction(const Packet& packet, size_t m, const Floats& t) {
     const Medium& medium = packet.fog.media[m];
     const Mask16 inside = (t >= load(packet.scratch.from[m].data())) & (t <= load(packet.scratch.to[m].data()));
-    Floats value = grey_extinction(medium.optics);
+    Floats value = gray_extinction(medium.optics);
     if (medium.density.kind == DensityKind::height) {
         const Floats height = max(fma(packet.direction.y, t, packet.origin.y) - medium.density.height_base, 0.0f);
         value = value * exp(height * (-1 / medium.density.height_falloff));

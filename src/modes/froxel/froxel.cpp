@@ -44,7 +44,7 @@ struct FroxelFrame {
 // Fills `scene` with the settings applied. Returns the fields that rays integrate by themselves.
 FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
     const TermSettings& terms = settings.terms;
-    scene.snapshot = with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), terms)));
+    scene.snapshot = with_fire_lamps(with_mean_environment(with_terms(stylized(snapshot, settings.style), terms)));
     scene.snapshot = with_mesh_lamps(std::move(scene.snapshot), terms.emission);
     FieldLight fields = take_fields(scene.snapshot, settings.style, view.camera);
     scene.settings = with_tile(settings.of<FroxelSettings>(), view.size), scene.style = settings.style;
@@ -83,7 +83,7 @@ void set_beams(const FroxelGrid& grid, FroxelScene& scene) {
         scene.lamp_views_fit = has_room_for_views(
             scene.snapshot, [](const Light& light) { return is_distant(light) ? 0 : lamp_points(light); });
     for (size_t i = 0; i < scene.snapshot.lights.size(); ++i) {
-        scene.nears.push_back(scene.settings.amortise ? NearLight{} : near_light(scene, grid, i));
+        scene.nears.push_back(scene.settings.amortize ? NearLight{} : near_light(scene, grid, i));
         if (scene.nears.back().radius > 0) scene.beams.push_back(i);
     }
 }
@@ -148,7 +148,7 @@ FroxelSums sums_with_history(FroxelFrame& frame, FroxelStatics& statics, std::sh
         const std::vector<Light>& lights = frame.scene.snapshot.lights;
         std::vector<uint8_t> stale;
         const bool settled = statics.settled();
-        if (settings.amortise) stale = stale_froxels(statics.grid, light, lights, frame.frame, settled);
+        if (settings.amortize) stale = stale_froxels(statics.grid, light, lights, frame.frame, settled);
         const uint8_t* skipped = stale.empty() ? nullptr : stale.data();
         const FillPass pass{.frame = frame.frame, .stale = skipped, .statics = settled, .beams = beams};
         const FroxelLight now = fill_still_froxels(frame.scene, statics, pass);

@@ -35,10 +35,10 @@ void set_slices(FroxelGrid& grid, float near, float far, int count, float growth
 
     const float thinnest = std::min(grid.faces[1] - near, far - grid.faces[static_cast<size_t>(count) - 1]);
     const int stretches = static_cast<int>(std::clamp((far - near) / thinnest, 1.0f, 65536.0f)) + 1;
-    grid.stretches_per_metre = static_cast<float>(stretches) / (far - near);
+    grid.stretches_per_meter = static_cast<float>(stretches) / (far - near);
     grid.first_slice.assign(static_cast<size_t>(stretches), 0);
     for (int i = 0, k = 0; i < stretches; ++i) {
-        const float start = near + (static_cast<float>(i) - 0.01f) / grid.stretches_per_metre;
+        const float start = near + (static_cast<float>(i) - 0.01f) / grid.stretches_per_meter;
         while (k + 1 < count && grid.faces[static_cast<size_t>(k) + 1] <= start) ++k;
         grid.first_slice[static_cast<size_t>(i)] = k;
     }
@@ -55,8 +55,8 @@ vec3 project(const FroxelGrid& grid, vec3 point) {
     const float z = glm::dot(offset, camera.forward);
     const bool ortho = camera.ortho_height > 0;
     const float height = ortho ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov) * z;
-    const float per_metre = static_cast<float>(grid.picture.y) / height;
+    const float per_meter = static_cast<float>(grid.picture.y) / height;
     const vec2 across(glm::dot(offset, camera.right), -glm::dot(offset, camera.up));
-    return vec3(across * per_metre + 0.5f * vec2(grid.picture), z);
+    return vec3(across * per_meter + 0.5f * vec2(grid.picture), z);
 }
 }

@@ -25,7 +25,7 @@ struct FroxelGrid {
     std::vector<float> slants; // per tile: length of the line through its center per meter of planar depth
 
     std::vector<int32_t> first_slice; // slice at or before the start of each of many equal depth intervals
-    float stretches_per_metre = 0;
+    float stretches_per_meter = 0;
 
     int slices() const { return static_cast<int>(faces.size()) - 1; }
     size_t tiles() const { return static_cast<size_t>(size.x) * static_cast<size_t>(size.y); }
@@ -63,7 +63,7 @@ void set_slices(FroxelGrid& grid, float near, float far, int count, float growth
 
 // The slice that contains a planar depth, clamped to the first and last.
 inline int slice_of(const FroxelGrid& grid, float z) {
-    const float place = (z - grid.faces.front()) * grid.stretches_per_metre;
+    const float place = (z - grid.faces.front()) * grid.stretches_per_meter;
     const int last = static_cast<int>(grid.first_slice.size()) - 1;
     int k = grid.first_slice[place > 0 ? (place < static_cast<float>(last) ? static_cast<int>(place) : last) : 0];
     while (k + 1 < grid.slices() && z >= grid.faces[k + 1]) ++k;

@@ -44,7 +44,7 @@ struct Followed {
     bool all = false, exact = false;
 };
 Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings) {
-    const bool by_ray = !settings.amortise && !is_distant(light);
+    const bool by_ray = !settings.amortize && !is_distant(light);
     const bool exact = by_ray && settings.visibility == FroxelVisibility::intervals && !has_alpha_shadows(snapshot) &&
                        !(is_soft(light) && settings.shadow_rays > 1);
     const bool shadows = settings.visibility != FroxelVisibility::off && shadow_casters(light, snapshot);
@@ -86,7 +86,7 @@ void add_light(const View& view, const Light& light, const Snapshot& snapshot, c
     if (light.filter) add_blurred_filter(light, std::max(filter_point_angle(light), across), limitations);
     if (by_rays.all) return;
     if (view.has_history && is_moving(snapshot, light)) add(Severity::degraded, limitation::moving_light);
-    if (settings.amortise && !is_distant(light) && in_fog(snapshot, light.position))
+    if (settings.amortize && !is_distant(light) && in_fog(snapshot, light.position))
         add(Severity::info, limitation::flat_glow, {size.coarse()});
 }
 

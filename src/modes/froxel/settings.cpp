@@ -37,10 +37,10 @@ void append_froxel_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("froxel.history", "", 0, 0.99,
                               "weight of earlier frames (with --history, and in the viewer)",
                               TYNDALL_FIELD(of<FroxelSettings>().history)));
-    rows.push_back(choice_row("froxel.amortise", switches,
+    rows.push_back(choice_row("froxel.amortize", switches,
                               "with a history, relight only a quarter of the froxels in each frame",
-                              TYNDALL_FIELD(of<FroxelSettings>().amortise)));
-    mark_advanced(rows, {"depth_growth", "amortise"});
+                              TYNDALL_FIELD(of<FroxelSettings>().amortize)));
+    mark_advanced(rows, {"depth_growth", "amortize"});
 }
 
 void set_froxel_quality(Settings& settings, Quality quality) {

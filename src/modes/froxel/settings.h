@@ -16,7 +16,7 @@ struct FroxelSettings {
     int shadow_rays = 1; // per froxel and frame
     FroxelLookup lookup = FroxelLookup::trilinear;
     float history = 0.9f; // weight of earlier frames
-    bool amortise = false;
+    bool amortize = false;
 };
 
 // With the tile for an image of `size` pixels: of as many froxels in small images as in large ones, where they would be

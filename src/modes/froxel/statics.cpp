@@ -22,7 +22,7 @@ bool same(const std::shared_ptr<const Occluders>& a, const std::shared_ptr<const
 
 // Compares where a medium is and how dense, not how it scatters.
 bool same(const Medium& a, const Medium& b) {
-    return a.density.kind == b.density.kind && grey_extinction(a.optics) == grey_extinction(b.optics) &&
+    return a.density.kind == b.density.kind && gray_extinction(a.optics) == gray_extinction(b.optics) &&
            same(a.density.bounds, b.density.bounds) && a.density.world_to_local == b.density.world_to_local &&
            same(a.world_bounds, b.world_bounds) && a.density.height_base == b.density.height_base &&
            a.density.height_falloff == b.density.height_falloff && a.density.bricks == b.density.bricks;

@@ -131,7 +131,7 @@ OtherSums other_light(RayMarch& on) {
         for (size_t m = 0; m < fog.media; ++m) {
             const Optics& optics = on.frame.snapshot.media[m].optics;
             const dvec3 per_density =
-                double(grey_extinction(optics)) * dvec3(albedo_on(on, optics, t) * on.frame.snapshot.ambient);
+                double(gray_extinction(optics)) * dvec3(albedo_on(on, optics, t) * on.frame.snapshot.ambient);
             const double density = weight * fog.density(piece, m, t);
             sum.ambient += density * per_density, sum.emission += density * dvec3(optics.emission.radiance);
         }

@@ -108,7 +108,7 @@ Floats extinction_at(const SingleScattering& frame, const Points& points, const 
     for (size_t m = 0; m < frame.snapshot.media.size(); ++m) {
         const Medium& medium = frame.snapshot.media[m];
         const Floats density = density16(medium, points.position);
-        const Floats extinction = zero_unless(points.active, density * grey_extinction(medium.optics));
+        const Floats extinction = zero_unless(points.active, density * gray_extinction(medium.optics));
         store(extinction, packet.scratch.extinction[m].data());
         total = total + extinction;
     }

@@ -46,7 +46,7 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     auto fog = std::make_shared<SingleScattering>();
     const MarchSettings& march = settings.march;
     const bool intervals = march.visibility == Visibility::intervals, exact = march.visibility == Visibility::exact;
-    fog->snapshot = with_terms(stylised(snapshot, settings.style), settings.terms), fog->style = settings.style;
+    fog->snapshot = with_terms(stylized(snapshot, settings.style), settings.terms), fog->style = settings.style;
     const bool shadows = march.visibility != Visibility::off;
     const auto scattering =
         scattering_fog(fog->snapshot, settings.style, settings.terms, view.camera, march.min_transmittance);

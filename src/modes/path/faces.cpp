@@ -42,10 +42,10 @@ void hit_faces(const PathState& state, Segment& line) {
         const Light& light = state.snapshot.lights[i];
         if (!finds_face(light, from.ray.origin, from.peak)) continue;
         const float away = area_hit(*light.area, {from.ray.origin, from.ray.direction, infinity});
-        if (away == infinity || !(away > line.travelled && away <= line.travelled + line.end)) continue;
+        if (away == infinity || !(away > line.traveled && away <= line.traveled + line.end)) continue;
         const float own = from.density * area_steradians(*light.area, from.ray.origin, from.ray.direction, away);
         const vec3 radiance = radiance_of(light) * face_texture(*light.area, from.ray.at(away)) * light.volume_scale;
-        const float share = line.transmittance * line_transmittance(state, line, {0, away - line.travelled});
+        const float share = line.transmittance * line_transmittance(state, line, {0, away - line.traveled});
         add_light(state, line, radiance * (share * own / (aimed + own)), i, from.in_fog);
     }
 }

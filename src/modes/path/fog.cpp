@@ -16,7 +16,7 @@ void evaluate_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& l
     fog.extinction.resize(snapshot.media.size()), fog.albedo.resize(snapshot.media.size());
     for (size_t m = 0; m < snapshot.media.size(); ++m, ++lookups) {
         const Optics& optics = snapshot.media[m].optics;
-        fog.extinction[m] = grey_extinction(optics) * density_at(snapshot.media[m], position);
+        fog.extinction[m] = gray_extinction(optics) * density_at(snapshot.media[m], position);
         if (optics.albedo_field) fog.albedo[m] = albedo_at(optics, position);
         fog.total += fog.extinction[m];
     }
@@ -35,7 +35,7 @@ float guessed_transmittance(const Snapshot& snapshot, const Segment& line, float
             continue;
         }
         const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
-        in_grids += static_cast<double>(inside.length()) * grey_extinction(medium.optics) * medium.density.bricks->mean;
+        in_grids += static_cast<double>(inside.length()) * gray_extinction(medium.optics) * medium.density.bricks->mean;
     }
     return static_cast<float>(std::exp(-depth - std::min(in_grids, max_in_grids)));
 }
@@ -112,7 +112,7 @@ struct FireShares {
     float picked = 0, collided = 0;
 };
 FireShares fire_shares(const Segment& line, const EmissionSample& place, float distance, float colliding) {
-    const float found = place.line_density + colliding, away = line.travelled + distance;
+    const float found = place.line_density + colliding, away = line.traveled + distance;
     const bool aims = line.vertex.density > 0; // no connections from the eye
     const float chance = aims ? found + place.density * away * away / line.vertex.density : found;
     if (!(chance > 0)) return {};
@@ -289,7 +289,7 @@ void collide(const PathState& state, Segment& line) {
     const Optics& optics = snapshot.media[hit].optics;
     const bool in_fog = state.order == 0 || line.vertex.in_fog;
     if (thin_range(line, snapshot.media[hit]).empty())
-        add_light(state, line, optics.emission.radiance / grey_extinction(optics), OtherLight::emission, in_fog);
+        add_light(state, line, optics.emission.radiance / gray_extinction(optics), OtherLight::emission, in_fog);
     if (!state.scatters && !state.tracer.fire) return;
     FogPoint& fog = state.scratch.fog;
     evaluate_fog(snapshot, line.rest.at(nearest), fog, state.results[line.vertex.lane].steps);
@@ -310,7 +310,7 @@ float collision_pdf(const Snapshot& snapshot, vec3 position, int& lookups) {
     float extinction = 0;
     for (const Medium& medium : snapshot.media) {
         if (only_emits(medium.optics)) continue;
-        extinction += grey_extinction(medium.optics) * density_at(medium, position);
+        extinction += gray_extinction(medium.optics) * density_at(medium, position);
         ++lookups;
     }
     return collision_share * extinction;

@@ -32,7 +32,7 @@ vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
 float target_density(const PathTracer& tracer, const Segment& line, const SurfacePoint& surface, int instance,
                      int triangle) {
     const float density = tracer.emitters ? triangle_density(*tracer.emitters, instance, triangle) : 0;
-    const float distance = line.travelled + line.end,
+    const float distance = line.traveled + line.end,
                 facing = std::abs(glm::dot(surface.face_normal, line.rest.direction));
     return density > 0 ? density * distance * distance / std::max(facing, 1e-12f) : 0;
 }
@@ -257,7 +257,7 @@ void hit_surface(const PathState& state, Segment& line, const SurfacePoint& surf
     const float t = line.end;
     line.rest.origin = line.rest.at(t);
     line.rest.t_max -= t;
-    line.travelled += t;
+    line.traveled += t;
     line.skip = std::max(shadow_offset(line.rest.origin), 4e-6f * t);
     line.instance = instance, line.triangle = triangle;
 }

@@ -49,7 +49,7 @@ struct PathVertex {
 struct Segment {
     PathVertex vertex;
     Ray rest;                         // from the last BLEND surface on
-    float skip = 0, travelled = 0;    // travelled: up to the start of `rest`
+    float skip = 0, traveled = 0;     // traveled: up to the start of `rest`
     float end = 0;                    // of the current segment, along `rest`
     float transmittance = 1;          // transmittance of fog and surfaces so far
     int instance = -1, triangle = -1; // surface just passed

@@ -50,7 +50,7 @@ vec3 lamp_brightness(const Snapshot& snapshot, const Light& light, const Ray& to
     return sum * light.intensity * (light.volume_scale * share * 2 * at_edge);
 }
 
-float pixels_per_metre(const View& view, float depth) {
+float pixels_per_meter(const View& view, float depth) {
     const bool flat = view.camera.ortho_height > 0;
     const float height = flat ? view.camera.ortho_height : 2 * depth * std::tan(0.5f * view.camera.vertical_fov);
     return static_cast<float>(view.size.y) / height;
@@ -80,7 +80,7 @@ std::vector<BlurLight> blur_lights(const View& view, const Snapshot& snapshot, c
         const float distance = glm::length(towards);
         BlurLight blur{i, *position, sun ? infinity : depth, 0, fade, vec3(0), 0};
         blur.radius = settings.size * static_cast<float>(view.size.y);
-        if (!sun) blur.radius = settings.lamp_size * pixels_per_metre(view, depth);
+        if (!sun) blur.radius = settings.lamp_size * pixels_per_meter(view, depth);
         const Ray ray{view.camera.position, towards / distance, sun ? far : distance};
         const double disc = std::atan(2.0 * std::min(settings.size, 0.5f) * std::tan(0.5 * view.camera.vertical_fov));
         blur.color = sun ? sun_brightness(snapshot, light, ray, std::clamp(disc, 1e-3, 3.1))

@@ -57,7 +57,7 @@ ScatterFunction prepare_radial_blur(const View&, const Snapshot& snapshot, const
 PostFunction post_radial_blur(const View& view, const Snapshot& snapshot, const Settings& settings) {
     auto blur = std::make_shared<RadialBlur>();
     blur->view = view, blur->settings = settings.of<RadialBlurSettings>();
-    blur->snapshot = stylised(snapshot, settings.style);
+    blur->snapshot = stylized(snapshot, settings.style);
     average_filters(blur->snapshot);
     blur->lights = blur_lights(view, blur->snapshot, settings.of<RadialBlurSettings>());
     blur->line = make_line(settings.of<RadialBlurSettings>());

@@ -110,7 +110,7 @@ HWY_INLINE Floats extinction_at(const Packet& packet, const Vec3s& position, Six
     Floats total = 0.0f;
     for (size_t m = 0; m < packet.media(); ++m) {
         const Medium& medium = packet.march.snapshot.media[m];
-        const Floats extinction = density16(medium, position) * grey_extinction(medium.optics);
+        const Floats extinction = density16(medium, position) * gray_extinction(medium.optics);
         store(extinction, each[m].data());
         total = total + extinction;
     }

@@ -35,7 +35,7 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
                                    History* history) {
     auto march = std::make_shared<ShadowMapMarch>();
     march->snapshot =
-        with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)));
+        with_fire_lamps(with_mean_environment(with_terms(stylized(snapshot, settings.style), settings.terms)));
     march->snapshot = with_mesh_lamps(std::move(march->snapshot), settings.terms.emission);
     FieldLight fields = take_fields(march->snapshot, settings.style, view.camera);
     march->settings = settings.of<ShadowMapSettings>(), march->style = settings.style, march->camera = view.camera;

@@ -28,7 +28,7 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     auto frame = std::make_shared<SingleScattering>();
     const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
     frame->snapshot =
-        with_fire_lamps(with_mean_environment(with_terms(stylised(snapshot, settings.style), settings.terms)));
+        with_fire_lamps(with_mean_environment(with_terms(stylized(snapshot, settings.style), settings.terms)));
     frame->snapshot = with_mesh_lamps(std::move(frame->snapshot), settings.terms.emission);
     frame->style = settings.style;
     FieldLight fields = take_fields(frame->snapshot, settings.style, view.camera);

@@ -133,7 +133,7 @@ namespace {
 // few bright pixels, and an estimate from differences between neighbors.
 Noise single_noise(const Choice& choice, const Layers& image) {
     const SquaredError& sample = choice.measured.sample;
-    const Noise seen = noise_by_neighbours(image);
+    const Noise seen = noise_by_neighbors(image);
     return {std::max(std::sqrt(sample.value), seen.error), std::max(std::sqrt(sample.bound), seen.bound)};
 }
 }

@@ -14,7 +14,7 @@
 
 namespace tyndall {
 namespace {
-Prepared prepare_grey(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
+Prepared prepare_gray(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                       History* history) {
     const double start = steady_seconds();
     Prepared result;
@@ -59,12 +59,12 @@ ScatterFunction combine_channels(std::vector<ScatterFunction> channels) {
 
 Prepared prepare_moment(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                         History* history) {
-    if (!is_chromatic(snapshot)) return prepare_grey(mode, view, snapshot, settings, history);
+    if (!is_chromatic(snapshot)) return prepare_gray(mode, view, snapshot, settings, history);
     Prepared result;
     std::vector<ScatterFunction> channels;
     for (int c = 0; c < 3; ++c) {
         const auto scene = std::make_shared<const Snapshot>(channel_of(snapshot, c));
-        Prepared channel = prepare_grey(mode, view, *scene, settings, nullptr);
+        Prepared channel = prepare_gray(mode, view, *scene, settings, nullptr);
         channel.channel = scene;
         result.emitters = channel.emitters;
         channels.push_back(channel.scatter);
@@ -76,7 +76,7 @@ Prepared prepare_moment(const Mode& mode, const View& view, const Snapshot& snap
 }
 
 namespace {
-void shade_grey(const Snapshot& snapshot, const Prepared& prepared, std::span<const SurfacePoint> points,
+void shade_gray(const Snapshot& snapshot, const Prepared& prepared, std::span<const SurfacePoint> points,
                 std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light) {
     shade_surfaces(snapshot, prepared.light_depths, points, u, radiance, per_light);
     if (prepared.emitters) add_emitted_light(prepared.emitters, snapshot, points, u, radiance);
@@ -85,11 +85,11 @@ void shade_grey(const Snapshot& snapshot, const Prepared& prepared, std::span<co
 
 void shade(const Snapshot& snapshot, const Prepared& prepared, std::span<const SurfacePoint> points,
            std::span<const vec2> u, std::span<vec3> radiance, std::vector<vec3>* per_light) {
-    if (prepared.channels.empty()) return shade_grey(snapshot, prepared, points, u, radiance, per_light);
+    if (prepared.channels.empty()) return shade_gray(snapshot, prepared, points, u, radiance, per_light);
     std::vector<vec3> found(points.size()), of_lights;
     for (glm::length_t c = 0; c < 3; ++c) {
         const Prepared& channel = prepared.channels[static_cast<size_t>(c)];
-        shade_grey(*channel.channel, channel, points, u, found, per_light ? &of_lights : nullptr);
+        shade_gray(*channel.channel, channel, points, u, found, per_light ? &of_lights : nullptr);
         for (size_t i = 0; i < found.size(); ++i) radiance[i][c] = found[i][c];
         if (!per_light) continue;
         per_light->resize(of_lights.size());

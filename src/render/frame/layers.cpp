@@ -142,7 +142,7 @@ Noise worse(const Noise& a, const Noise& b) {
 
 // Half the squared differences from adjacent pixels: on average their variance plus half the squared difference of
 // their means.
-Noise noise_by_neighbours(const Image<vec3>& picture) {
+Noise noise_by_neighbors(const Image<vec3>& picture) {
     Image<vec3> variances(picture.size);
     Image<float> errors(picture.size);
     constexpr ivec2 beside[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
@@ -169,11 +169,11 @@ Noise noise_of(const Layers& layers) {
                  noise_of(layers.inscatter, layers.inscatter_variance, layers.inscatter_variance_error));
 }
 
-Noise noise_by_neighbours(const Layers& layers) {
+Noise noise_by_neighbors(const Layers& layers) {
     // Along an edge, which crosses a pixel anywhere, the variance is a sixth of the squared step. Half the squared
     // differences are a half of it across the edge and a sixth along it, a third on average: twice the variance.
     const double edge_share = std::sqrt(0.5);
-    Noise noise = worse(noise_by_neighbours(layers.color), noise_by_neighbours(layers.inscatter));
+    Noise noise = worse(noise_by_neighbors(layers.color), noise_by_neighbors(layers.inscatter));
     noise.error *= edge_share;
     return noise;
 }

@@ -119,5 +119,5 @@ Noise noise_of(const Layers& layers);
 
 // Noise of an image with one sample per pixel, from the differences between neighboring pixels. Their means differ too,
 // so that the noise is less than the bound. The error is that along an edge, where half of the variance is noise.
-Noise noise_by_neighbours(const Layers& layers);
+Noise noise_by_neighbors(const Layers& layers);
 }

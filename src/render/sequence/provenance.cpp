@@ -186,7 +186,7 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
     attributes["tyndall:hash"] = hash;
     attributes["tyndall:nonFinite"] = std::to_string(stats.non_finite);
     if (stats.non_finite) attributes["tyndall:firstNonFinite"] = pair_text(stats.first_non_finite, ",");
-    if (is_stylised(plan.settings.style) && honours_style(*plan.mode)) attributes["stylised"] = "1";
+    if (is_stylized(plan.settings.style) && honors_style(*plan.mode)) attributes["stylized"] = "1";
     if (view.shutter) attributes["tyndall:timeSamples"] = std::to_string(view.shutter->cameras.size());
     if (stats.noise) {
         attributes["tyndall:samples"] = std::to_string(stats.samples);

@@ -66,8 +66,8 @@ void read_face(const Field& field, LightSource& light) {
         const Field given = field.member(name);
         if (!given) refuse(field, "a " + std::string(traits_of(light.kind).noun) + " needs a " + name);
         value = keyed_number(given);
-        for (const float metres : value.values)
-            if (!(metres > 0)) refuse(given, "must be greater than 0");
+        for (const float meters : value.values)
+            if (!(meters > 0)) refuse(given, "must be greater than 0");
     };
     if (light.kind == LightKind::rectangle)
         size("width", light.width), size("height", light.height);

@@ -44,9 +44,9 @@ void read_extinction(const Field& field, MediumSource& medium) {
     medium.extinction.times = channels.times, medium.extinction.interpolation = channels.interpolation;
     medium.extinction.loop = channels.loop, medium.extinction.values.clear();
     for (const vec3 value : channels.values) medium.extinction.values.push_back(mean_component(value));
-    const auto grey = [](vec3 value) { return value.x == value.y && value.x == value.z; };
+    const auto gray = [](vec3 value) { return value.x == value.y && value.x == value.z; };
     medium.channel_extinction.reset();
-    if (!std::ranges::all_of(channels.values, grey)) medium.channel_extinction = channels;
+    if (!std::ranges::all_of(channels.values, gray)) medium.channel_extinction = channels;
 }
 
 // Fields that are absent keep their values: the defaults of the recipe or the volume.
@@ -120,7 +120,7 @@ void read_vdb_source(const Field& field, MediumSource& medium, Scene& scene) {
     bool known = false;
     if (path) with_location(file, [&] { known = read_metadata(*path, medium); });
     if (!known && !field.member("extinction"))
-        warn(scene, file.location() + ": neither the scene nor the file states an extinction; 0.1 per metre is used");
+        warn(scene, file.location() + ": neither the scene nor the file states an extinction; 0.1 per meter is used");
 }
 
 MediumSource medium_source(const Field& field, size_t index, Scene& scene) {

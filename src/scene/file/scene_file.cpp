@@ -108,7 +108,7 @@ Scene load_volume(const std::filesystem::path& file, const LoadOptions& options)
                     ": a volume by itself; using a sun of 3 lux, some ambient light, a camera that sees all of "
                     "it, and " +
                     formatted("%.3g", static_cast<double>(scene.media[0].extinction.at(0))) +
-                    " per metre as its extinction at density 1");
+                    " per meter as its extinction at density 1");
     return scene;
 }
 }

@@ -51,6 +51,6 @@ void add_missing_light_and_fog(Scene& scene) {
     fog.bounds = {bounds.low - 3 * diagonal, bounds.high + 3 * diagonal};
     scene.media.push_back(fog);
     warn(scene, file + ": a glTF has no fog; height fog with an extinction of " +
-                    formatted("%.3g", fog.extinction.values[0]) + " per metre is used");
+                    formatted("%.3g", fog.extinction.values[0]) + " per meter is used");
 }
 }

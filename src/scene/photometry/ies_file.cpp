@@ -10,7 +10,7 @@
 
 namespace tyndall {
 namespace {
-constexpr double metres_per_foot = 0.3048, max_candela = 1e15;
+constexpr double meters_per_foot = 0.3048, max_candela = 1e15;
 
 std::string_view trimmed(std::string_view text) {
     const auto blank = [](char c) { return static_cast<unsigned char>(c) <= ' '; };
@@ -222,7 +222,7 @@ void read_body(Reader& reader, IesFile& file) {
         reader.fail_at("the photometric type is " + shortest_text(type) + "; supported: 1 (C), 2 (B) and 3 (A)");
     file.type = static_cast<Photometry>(static_cast<int>(type));
     for (int axis = 0; axis < 3; ++axis)
-        file.size[axis] = reader.number("the size of the luminaire") * (units == 1 ? metres_per_foot : 1);
+        file.size[axis] = reader.number("the size of the luminaire") * (units == 1 ? meters_per_foot : 1);
     file.ballast = reader.number("the ballast factor");
     // The ballast-lamp factor until 1995, always 1 in 2002, the code of the file generation type in 2019.
     const double third = reader.number("the ballast-lamp factor");

@@ -216,7 +216,7 @@ CacheKey fluence_key(const Snapshot& snapshot, const FluenceSettings& settings, 
     if (snapshot.environment) add_environment(*snapshot.environment, snapshot, key);
     for (const Medium& medium : snapshot.media) {
         const Optics& optics = medium.optics;
-        key.add(medium.density.kind).add(grey_extinction(optics)).add(optics.albedo);
+        key.add(medium.density.kind).add(gray_extinction(optics)).add(optics.albedo);
         add_phase(optics.phase, key);
         key.add(medium.density.bounds)
             .add(medium.world_bounds)

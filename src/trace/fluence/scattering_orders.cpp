@@ -25,7 +25,7 @@ double multiple_over_single(double optical_radius, double albedo) {
 
 double multiple_over_single(const Medium& medium) {
     const vec3 albedo = medium.optics.albedo;
-    const double w = max_component(albedo), sigma = grey_extinction(medium.optics);
+    const double w = max_component(albedo), sigma = gray_extinction(medium.optics);
     if (!is_finite(medium.world_bounds.size())) return w < 1 ? w / (1 - w) : double(infinity);
     const double density = medium.density.kind == DensityKind::bricks ? double(medium.density.bricks->mean) : 1.0;
     const dvec3 size(medium.world_bounds.size());

@@ -62,7 +62,7 @@ float mean_depth(const LightDepth& depth, const Snapshot& snapshot) {
 CacheKey depth_key(std::span<const Medium* const> bricks, const Light& light, int resolution) {
     CacheKey key;
     key.add(light).add(resolution);
-    for (const Medium* medium : bricks) key.add(medium->density.bricks).add(grey_extinction(medium->optics));
+    for (const Medium* medium : bricks) key.add(medium->density.bricks).add(gray_extinction(medium->optics));
     return key;
 }
 

@@ -72,7 +72,7 @@ HWY_INLINE Floats mean_height_density(const Medium& medium, const Floats& y0, co
 // Exact optical depth of homogeneous and height fog.
 HWY_INLINE Floats analytic_depth16(const Medium& medium, const Segments16& paths) {
     const Interval<Floats> range = inside_box(medium, paths);
-    const Floats length = max(range.high - range.low, 0.0f) * grey_extinction(medium.optics);
+    const Floats length = max(range.high - range.low, 0.0f) * gray_extinction(medium.optics);
     if (medium.density.kind == DensityKind::homogeneous) return length;
     const Floats y0 = fma(paths.direction.y, range.low, paths.origin.y);
     const Floats y1 = fma(paths.direction.y, range.high, paths.origin.y);

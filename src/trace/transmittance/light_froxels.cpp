@@ -36,7 +36,7 @@ Floats depth_along(const Medium& medium, const Segments16& paths) {
         const Floats at = fma(step, static_cast<float>(i) + 0.5f, range.low);
         sum = sum + density16(medium, fma(paths.direction, at, paths.origin));
     }
-    return zero_unless(length > 0.0f, sum * step * grey_extinction(medium.optics));
+    return zero_unless(length > 0.0f, sum * step * gray_extinction(medium.optics));
 }
 
 void fill_corners(std::span<const Medium* const> media, const Light& light, int64_t row,

@@ -55,7 +55,7 @@ Floats depth_between(const Medium& medium, const Columns& columns, float from, f
         const float w = from + (static_cast<float>(i) + 0.5f) * step;
         sum = sum + density16(medium, fma(columns.direction, w, columns.origin));
     }
-    return sum * (step * grey_extinction(medium.optics));
+    return sum * (step * gray_extinction(medium.optics));
 }
 
 void fill_columns(std::span<const Medium* const> media, int first, int row, const LightDepthGrid& grid,

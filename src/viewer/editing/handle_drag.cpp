@@ -57,16 +57,16 @@ std::vector<Action> drag_actions(const HandleDrag& drag, vec2 to) {
 }
 
 std::vector<vec2> beam_ring(const Camera& camera, ivec2 size, const Scene& scene, size_t light, double seconds,
-                            float metres) {
+                            float meters) {
     const LightPlacement place = light_placement(scene, light, seconds);
     const float angle = std::min(scene.lights[light].outer_cone.at(seconds), 0.49f * pi);
-    const vec3 middle = place.position + metres * place.direction;
+    const vec3 middle = place.position + meters * place.direction;
     const vec3 aside = std::abs(place.direction.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
     const vec3 u = glm::normalize(glm::cross(place.direction, aside)), v = glm::cross(place.direction, u);
     std::vector<vec2> ring;
     for (int i = 0; i < ring_points; ++i) {
         const float turn = 2 * pi * static_cast<float>(i) / ring_points;
-        const vec3 point = middle + metres * std::tan(angle) * (std::cos(turn) * u + std::sin(turn) * v);
+        const vec3 point = middle + meters * std::tan(angle) * (std::cos(turn) * u + std::sin(turn) * v);
         const std::optional<vec2> pixel = pixel_of(camera, size, point);
         if (!pixel) return {};
         ring.push_back(*pixel);

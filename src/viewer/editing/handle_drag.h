@@ -28,7 +28,7 @@ HandleDrag begin_drag(const ViewState& state, ivec2 size, const LightIcon& icon,
 // The actions that move the light to the pointer's position `to`.
 std::vector<Action> drag_actions(const HandleDrag& drag, vec2 to);
 
-// The outline of a spot's beam at a distance of `metres`, in pixels; empty if part of it is behind the camera.
+// The outline of a spot's beam at a distance of `meters`, in pixels; empty if part of it is behind the camera.
 std::vector<vec2> beam_ring(const Camera& camera, ivec2 size, const Scene& scene, size_t light, double seconds,
-                            float metres);
+                            float meters);
 }

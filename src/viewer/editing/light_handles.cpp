@@ -84,12 +84,12 @@ float pixel_size(const Camera& camera, ivec2 size, vec3 point) {
 
 std::vector<HandlePoint> light_handles(const Camera& camera, ivec2 size, const LightIcon& icon, const Scene& scene,
                                        double seconds, float length) {
-    const float metres = length * pixel_size(camera, size, icon.place);
+    const float meters = length * pixel_size(camera, size, icon.place);
     const bool moves = has(scene, icon.light, "position");
     std::vector<HandlePoint> handles;
     if (moves) handles.push_back({Handle::view, icon.pixel});
     const auto add = [&](Handle handle, vec3 direction) {
-        const std::optional<vec2> end = pixel_of(camera, size, icon.place + metres * direction);
+        const std::optional<vec2> end = pixel_of(camera, size, icon.place + meters * direction);
         if (end && glm::distance(*end, icon.pixel) > 0.1f * length) handles.push_back({handle, *end});
     };
     for (const Handle axis : {Handle::x, Handle::y, Handle::z})
@@ -142,9 +142,9 @@ std::vector<Edit> drag_light(const Camera& camera, ivec2 size, const Scene& scen
         return edit("position", now.position + drag_along_axis(camera, size, icon.place, axis_of(handle), from, to));
 
     // The light rotates in place: the tip keeps its offset from the pointer, and a target keeps its distance.
-    const float metres = length * pixel_size(camera, size, icon.place);
-    const vec2 tip = pixel_of(camera, size, icon.place + metres * now.direction).value_or(from);
-    const vec3 direction = drag_direction(camera, size, icon.place, now.direction, metres, tip + (to - from));
+    const float meters = length * pixel_size(camera, size, icon.place);
+    const vec2 tip = pixel_of(camera, size, icon.place + meters * now.direction).value_or(from);
+    const vec3 direction = drag_direction(camera, size, icon.place, now.direction, meters, tip + (to - from));
     const LightSource& light = scene.lights[icon.light];
     if (!light.target) return edit("direction", direction);
     const float distance = glm::distance(light.target->at(seconds), now.position);

@@ -14,12 +14,12 @@
 
 namespace tyndall {
 namespace {
-bool is_grey(vec3 value) { return value.x == value.y && value.y == value.z; }
+bool is_gray(vec3 value) { return value.x == value.y && value.y == value.z; }
 
 std::string value_text(const Property& property, vec3 value) {
     if (property.kind == ValueKind::toggle) return value.x != 0 ? "true" : "false";
     if (property.kind == ValueKind::number) return json_number(value.x);
-    return property.kind == ValueKind::color && is_grey(value) ? json_number(value.x) : list_text(value);
+    return property.kind == ValueKind::color && is_gray(value) ? json_number(value.x) : list_text(value);
 }
 
 Json json_at(std::string_view text, std::string_view pointer) {
@@ -36,11 +36,11 @@ void write_number(std::string& text, const std::string& pointer, float value) {
 // Replaces a constant value.
 void write_value(std::string& text, const std::string& pointer, const Property& property, vec3 value) {
     const Json old = json_at(text, pointer);
-    const bool grey = old.kind == Json::Kind::number && is_grey(value);
-    if (property.kind == ValueKind::number || (property.kind != ValueKind::toggle && grey))
+    const bool gray = old.kind == Json::Kind::number && is_gray(value);
+    if (property.kind == ValueKind::number || (property.kind != ValueKind::toggle && gray))
         return write_number(text, pointer, value.x);
     if (old.kind != Json::Kind::array) {
-        const bool list = property.kind != ValueKind::toggle && !grey;
+        const bool list = property.kind != ValueKind::toggle && !gray;
         text = with_json(text, pointer, list ? list_text(value) : value_text(property, value));
         return;
     }

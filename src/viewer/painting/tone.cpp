@@ -31,8 +31,8 @@ template<class Code> Image<glm::u8vec4> coded(const Layers& layers, const Code& 
 glm::u8vec3 plain_code(vec3 value, int x, int y) { return display_code(value, {0, ViewTransform::srgb}, x, y); }
 
 glm::u8vec3 false_color(vec3 color, float gain) {
-    constexpr float middle_grey = 0.18f;
-    const float light = gain * luminance(color) / middle_grey;
+    constexpr float middle_gray = 0.18f;
+    const float light = gain * luminance(color) / middle_gray;
     if (!(light > 0)) return glm::u8vec3(0);
     return color_of_stop(static_cast<int>(std::floor(std::clamp(std::log2(light), -1e3f, 1e3f))));
 }
@@ -71,8 +71,8 @@ Image<glm::u8vec4> tone_map(const Layers& layers, const DisplayOptions& shown) {
     }
     case ShownLayer::validity:
         return coded(layers, [&](int x, int y) {
-            const float grey = 0.05f + 0.4f * std::min(gain * luminance(layers.color.at(x, y)), 1.0f);
-            return plain_code(glm::mix(vec3(0.8f, 0.05f, 0.03f), vec3(grey), layers.validity.at(x, y)), x, y);
+            const float gray = 0.05f + 0.4f * std::min(gain * luminance(layers.color.at(x, y)), 1.0f);
+            return plain_code(glm::mix(vec3(0.8f, 0.05f, 0.03f), vec3(gray), layers.validity.at(x, y)), x, y);
         });
     case ShownLayer::stops:
         return coded(layers, [&](int x, int y) { return false_color(layers.color.at(x, y), gain); });

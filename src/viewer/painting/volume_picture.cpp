@@ -145,7 +145,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Scene& scene, co
                                            double(medium.density.height_falloff), double(medium.density.height_base))
                                : "homogeneous");
     }
-    facts.emplace_back("extinction", formatted("%.4g 1/m at density 1", double(grey_extinction(medium.optics))));
+    facts.emplace_back("extinction", formatted("%.4g 1/m at density 1", double(gray_extinction(medium.optics))));
     return facts;
 }
 }
@@ -162,7 +162,7 @@ std::shared_ptr<const VolumePicture> volume_picture(const Request& request, cons
         shown->remark = wanted.empty() ? "there is no fog at this moment" : wanted + " has no fog at this moment";
         return shown;
     }
-    shown->medium = medium->name, shown->extinction = grey_extinction(medium->optics);
+    shown->medium = medium->name, shown->extinction = gray_extinction(medium->optics);
     shown->right = axes_across[static_cast<size_t>(request.volume->axis)].x;
     shown->up = axes_across[static_cast<size_t>(request.volume->axis)].y;
     shown->box = shown_box(*medium, snapshot, request.camera);

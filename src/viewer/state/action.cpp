@@ -42,7 +42,7 @@ const std::vector<VerbInfo>& verbs() {
         {Verb::turn, "turn", "x y", "turn the camera in place, degrees"},
         {Verb::pan, "pan", "x y", "pan the view, in image heights"},
         {Verb::dolly, "dolly", "factor", "multiply the distance to the point looked at by a factor"},
-        {Verb::fly, "fly", "x y z", "move the camera right, up and forward, metres"},
+        {Verb::fly, "fly", "x y z", "move the camera right, up and forward, meters"},
         {Verb::size, "size", "x y", "image size in pixels; 0 0: the scene's"},
         {Verb::frame, "frame", "n", "go to a frame"},
         {Verb::step, "step", "n", "go n frames forward"},

@@ -58,8 +58,8 @@ Viewpoint turned(Viewpoint from, vec2 angle) {
 }
 
 Viewpoint panned(Viewpoint from, vec2 heights) {
-    const vec2 metres = heights * picture_height(from);
-    from.camera.position -= metres.x * from.camera.right + metres.y * from.camera.up;
+    const vec2 meters = heights * picture_height(from);
+    from.camera.position -= meters.x * from.camera.right + meters.y * from.camera.up;
     return from;
 }
 
@@ -71,8 +71,8 @@ Viewpoint dollied(Viewpoint from, float factor) {
     return from;
 }
 
-Viewpoint flown(Viewpoint from, vec3 metres) {
-    from.camera.position += metres.x * from.camera.right + vec3(0, metres.y, 0) + metres.z * from.camera.forward;
+Viewpoint flown(Viewpoint from, vec3 meters) {
+    from.camera.position += meters.x * from.camera.right + vec3(0, meters.y, 0) + meters.z * from.camera.forward;
     return from;
 }
 }

@@ -30,5 +30,5 @@ Viewpoint panned(Viewpoint from, vec2 heights);
 Viewpoint dollied(Viewpoint from, float factor);
 
 // Moves by meters to the right, along the world's up, and forward.
-Viewpoint flown(Viewpoint from, vec3 metres);
+Viewpoint flown(Viewpoint from, vec3 meters);
 }

@@ -7,8 +7,8 @@ namespace {
 constexpr double fly_share = 0.04; // of the distance to the target, per key press
 
 Action fly(const ViewState& state, vec3 direction) {
-    const vec3 metres = static_cast<float>(fly_share) * viewpoint(state).distance * direction;
-    return {Verb::fly, {}, {metres.x, metres.y, metres.z}, {}};
+    const vec3 meters = static_cast<float>(fly_share) * viewpoint(state).distance * direction;
+    return {Verb::fly, {}, {meters.x, meters.y, meters.z}, {}};
 }
 
 Action show_next(const ViewState& state) {

@@ -47,10 +47,10 @@ dvec3 rec709_from_xyz(dvec3 xyz) {
 }
 
 dvec3 in_gamut(dvec3 rgb) {
-    const double grey = luminance(rgb);
+    const double gray = luminance(rgb);
     const double least = std::min({rgb.x, rgb.y, rgb.z});
-    if (least >= 0 || !(grey > 0)) return glm::max(rgb, dvec3(0));
-    return glm::max(grey + (rgb - grey) * (grey / (grey - least)), dvec3(0));
+    if (least >= 0 || !(gray > 0)) return glm::max(rgb, dvec3(0));
+    return glm::max(gray + (rgb - gray) * (gray / (gray - least)), dvec3(0));
 }
 
 dvec3 blackbody_color(BlackbodyKind kind, double kelvin, double intensity) {

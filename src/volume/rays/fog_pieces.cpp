@@ -162,9 +162,9 @@ void find_fog(const Ray& ray, std::span<const Medium> media, double min_transmit
     if (!is_finite(ray.origin) || !is_finite(ray.direction)) fog.media = 0;
     const double t_end = fog.media == 0 ? 0 : horizon(ray, media);
     for (size_t m = 0; m < fog.media; ++m) {
-        fog.extinction.push_back(grey_extinction(media[m].optics));
+        fog.extinction.push_back(gray_extinction(media[m].optics));
         fog.densities[m].clear();
-        if (grey_extinction(media[m].optics) > 0) append_density(ray, media[m], t_end, fog.densities[m]);
+        if (gray_extinction(media[m].optics) > 0) append_density(ray, media[m], t_end, fog.densities[m]);
     }
     merge_media(std::min(opaque_depth, -std::log(min_transmittance)), fog);
 }

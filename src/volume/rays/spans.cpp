@@ -82,7 +82,7 @@ void append_brick_spans(const Ray& ray, const Medium& medium, double t_end, cons
     const LocalRay local = local_ray(pool, ray);
     const auto [whole, within] = grid_stretch(pool, local, t_end);
     if (whole.empty()) return;
-    const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = grey_extinction(medium.optics);
+    const double varied_rate = glm::length(local.direction) / rule.voxels, extinction = gray_extinction(medium.optics);
 
     // If no brick needs steps shorter than the rule's longest, one span replaces all bricks. A step in the few empty
     // ones costs less than finding them on every ray.
@@ -110,7 +110,7 @@ double horizon(const Ray& ray, std::span<const Medium> media) {
         if (medium.density.kind == DensityKind::bricks) continue;
         double depth = 0;
         walk_bands(ray, medium, [&](Interval<double> stretch, double, double smallest) {
-            const double extinction = grey_extinction(medium.optics) * smallest;
+            const double extinction = gray_extinction(medium.optics) * smallest;
             const double opaque = stretch.low + (opaque_depth - depth) / extinction;
             if (depth < opaque_depth && opaque < stretch.high) end = std::min(end, opaque);
             depth += extinction * stretch.length();
@@ -123,7 +123,7 @@ void append_spans(const Ray& ray, const Medium& medium, double t_end, const Step
     if (medium.density.kind == DensityKind::bricks) return append_brick_spans(ray, medium, t_end, rule, spans);
     walk_bands(ray, medium, [&](Interval<double> stretch, double largest, double) {
         const double high = std::min(stretch.high, t_end);
-        if (stretch.low < high) spans.push_back({stretch.low, high, grey_extinction(medium.optics) * largest, 0});
+        if (stretch.low < high) spans.push_back({stretch.low, high, gray_extinction(medium.optics) * largest, 0});
     });
 }
 

@@ -32,7 +32,7 @@ void collect_spans(const Ray& ray, std::span<const Medium> media, const StepRule
     scratch.spans.clear();
     const double t_end = horizon(ray, media);
     for (const Medium& medium : media) {
-        if (grey_extinction(medium.optics) == 0 && medium.optics.emission.radiance == vec3(0)) continue;
+        if (gray_extinction(medium.optics) == 0 && medium.optics.emission.radiance == vec3(0)) continue;
         scratch.more.clear();
         append_spans(ray, medium, t_end, rule, scratch.more);
         if (scratch.spans.empty()) {

@@ -43,8 +43,8 @@ class Grids(ProgramTest):
         [nebula] = corpus("vdb/volumarcher/nebula.vdb")
         medium = self.medium(nebula)
         medium["file"] = str(nebula)
-        grey = {**medium, "grids": {"density": "density"}, "albedo": 1}
-        for name, one in ("color", {**medium, "albedo": 1}), ("grey", grey):
+        gray = {**medium, "grids": {"density": "density"}, "albedo": 1}
+        for name, one in ("color", {**medium, "albedo": 1}), ("gray", gray):
             look = self.write("scene.json", scene(frames="1", media=[one]))
             for mode in "march", "path", "froxel":
                 self.succeed("render", look, "-o", self.path(f"{name}_{mode}.exr"), "--res", "24x13", "--samples", "4",
@@ -54,8 +54,8 @@ class Grids(ProgramTest):
             red, blue = sum(channels["inscatter.R"]), sum(channels["inscatter.B"])
             return red / blue if blue else 1
         for mode in "march", "path", "froxel":
-            self.assertAlmostEqual(ratio("grey", mode), 1, delta=0.05)
-            self.assertNotAlmostEqual(ratio("color", mode), ratio("grey", mode), delta=0.02)
+            self.assertAlmostEqual(ratio("gray", mode), 1, delta=0.05)
+            self.assertNotAlmostEqual(ratio("color", mode), ratio("gray", mode), delta=0.02)
             self.assertAlmostEqual(ratio("color", mode), ratio("color", "march"), delta=0.1 * ratio("color", "march"))
 
     def test_mistakes_are_one_line(self):

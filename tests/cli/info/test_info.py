@@ -108,7 +108,7 @@ class Info(ProgramTest):
             extensionsUsed=["KHR_lights_punctual"], extensions={"KHR_lights_punctual": {"lights": list(lights)}})
         return self.report(self.write("lights.glb", glb(content)))["light_units"]
 
-    def test_light_units_are_recognised_but_not_acted_on(self):
+    def test_light_units_are_recognized_but_not_acted_on(self):
         watt = 1 / (4 * math.pi)
         self.assertIn("standard", self.units(lamp("point", 683 * 1000 * watt), lamp("directional", 683 * 3)))
         self.assertIn("unitless", self.units(lamp("point", 1000 * watt), lamp("directional", 3)))

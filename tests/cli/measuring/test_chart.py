@@ -58,7 +58,7 @@ class Chart(ProgramTest):
                 self.assertTrue(self.path(f"chart/pictures/{point['mode']}.{point['rung']}.{kind}").exists())
 
     def test_even_open_fog_is_right_in_every_mode_that_says_so(self):
-        # One sun, nothing in its way, fog without grain: all but path are exact at pixel centres.
+        # One sun, nothing in its way, fog without grain: all but path are exact at pixel centers.
         self.chart("--modes", "march,shadow-volume,cone,path")
         best = {}
         for point in self.points():

@@ -36,7 +36,7 @@ def exr(width, height, channels, display=None, low=(0, 0)):
     return header + offsets + b"".join(rows)
 
 
-def grey(value, **layers):
+def gray(value, **layers):
     return {"R": value, "G": value, "B": value, **layers}
 
 
@@ -56,8 +56,8 @@ class Compare(ProgramTest):
 
 class Values(Compare):
     def test_known_pictures(self):
-        reference = self.picture("b.exr", grey(2, Z=1e10, **{"transmittance.T": 0.5}, **color_layer("inscatter", 1)))
-        test = self.picture("a.exr", grey(lambda x, y: 3 if x < 8 else 1, Z=3,
+        reference = self.picture("b.exr", gray(2, Z=1e10, **{"transmittance.T": 0.5}, **color_layer("inscatter", 1)))
+        test = self.picture("a.exr", gray(lambda x, y: 3 if x < 8 else 1, Z=3,
                                           **{"transmittance.T": 0.25}, **color_layer("inscatter", 1.75)))
         report = self.report(test, reference)
         self.assertEqual((report["size"], report["pixels"]), ([16, 8], 128))
@@ -74,13 +74,13 @@ class Values(Compare):
             self.assertIn(word, text)
 
     def test_equal_pictures(self):
-        path = self.picture("a.exr", grey(lambda x, y: x * y))
+        path = self.picture("a.exr", gray(lambda x, y: x * y))
         metrics = self.report(path, path)["metrics"]
         for name in METRICS:
             self.assertEqual(metrics[name], 1 if name == "ssim" else 0, name)
 
     def test_black_pictures(self):
-        black, light = self.picture("b.exr", grey(0)), self.picture("a.exr", grey(1))
+        black, light = self.picture("b.exr", gray(0)), self.picture("a.exr", gray(1))
         self.assertEqual(self.report(black, black)["metrics"]["rmse_rel"], 0)
         metrics = self.report(light, black)["metrics"]
         self.assertEqual((metrics["rmse"], metrics["rmse_rel"], metrics["ssim"]), (1, None, 0))
@@ -98,11 +98,11 @@ class Values(Compare):
         self.assertGreater(near["metrics"]["flip"], report["metrics"]["flip"])  # a checkerboard blurs with distance
 
     def test_halves(self):
-        reference = self.picture("b.exr", grey(2, **color_layer("half_a", 1), **color_layer("half_b", 3)))
-        metrics = self.report(self.picture("a.exr", grey(5)), reference)["metrics"]
+        reference = self.picture("b.exr", gray(2, **color_layer("half_a", 1), **color_layer("half_b", 3)))
+        metrics = self.report(self.picture("a.exr", gray(5)), reference)["metrics"]
         self.assertEqual((metrics["mse_unbiased"], metrics["mse_unbiased_error"]), (8, 0))
         self.assertNotIn("bias_squared", metrics)
-        both = self.picture("c.exr", grey(5, **color_layer("half_a", 6), **color_layer("half_b", 4)))
+        both = self.picture("c.exr", gray(5, **color_layer("half_a", 6), **color_layer("half_b", 4)))
         self.assertEqual(self.report(both, reference)["metrics"]["bias_squared"], 5)
 
     def test_rendered_pictures(self):
@@ -114,8 +114,8 @@ class Values(Compare):
         self.assertLess(abs(report["metrics"]["bias_rel"]), 0.1)
 
     def test_threads_do_not_matter(self):
-        a = self.picture("a.exr", grey(lambda x, y: math.sin(x * y) + 1), 61, 47)
-        b = self.picture("b.exr", grey(lambda x, y: math.sin(x * y + 0.1) + 1), 61, 47)
+        a = self.picture("a.exr", gray(lambda x, y: math.sin(x * y) + 1), 61, 47)
+        b = self.picture("b.exr", gray(lambda x, y: math.sin(x * y + 0.1) + 1), 61, 47)
         reports = {run("compare", a, b, "--json", "--threads", n).stdout for n in (1, 2, 5)}
         self.assertEqual(len(reports), 1)
 
@@ -124,8 +124,8 @@ class Sequences(Compare):
     def setUp(self):
         super().setUp()
         for frame in (1, 2, 3):
-            self.picture(f"b.{frame:04}.exr", grey(2))
-            self.picture(f"a.{frame:04}.exr", grey(2 + frame % 2))
+            self.picture(f"b.{frame:04}.exr", gray(2))
+            self.picture(f"a.{frame:04}.exr", gray(2 + frame % 2))
 
     def test_sequence_against_sequence_and_against_one_picture(self):
         for reference in ("b.####.exr", "b.0001.exr"):
@@ -157,7 +157,7 @@ class Sequences(Compare):
 class Limits(Compare):
     def setUp(self):
         super().setUp()
-        self.pair = self.picture("a.exr", grey(1.5)), self.picture("b.exr", grey(2))
+        self.pair = self.picture("a.exr", gray(1.5)), self.picture("b.exr", gray(2))
 
     def test_exit_codes(self):
         self.assertEqual(run("compare", *self.pair).returncode, 0)
@@ -180,8 +180,8 @@ class Limits(Compare):
             self.refuse(2, [metric], "compare", *self.pair, "--fail-above", f"{metric}=1")
 
     def test_pixels_that_are_not_finite(self):
-        test = self.picture("nan.exr", grey(lambda x, y: NAN if x == y == 3 else 2))
-        reference = self.picture("inf.exr", grey(lambda x, y: INF if x == 5 else 2))
+        test = self.picture("nan.exr", gray(lambda x, y: NAN if x == y == 3 else 2))
+        reference = self.picture("inf.exr", gray(lambda x, y: INF if x == 5 else 2))
         result = run("compare", test, reference, "--json")
         self.assertEqual(result.returncode, 6)
         self.assertIn("9 pixels", result.stderr)
@@ -190,18 +190,18 @@ class Limits(Compare):
         self.assertEqual((report["pixels"], report["metrics"]["rmse"]), (128 - 9, 0))
         self.assertEqual(run("compare", test, self.pair[0], "--fail-above", "rmse=0").returncode, 1)
         fog = color_layer("inscatter", lambda x, y: NAN if y == 0 else 1)
-        layer = self.picture("layer.exr", grey(2, **fog))
+        layer = self.picture("layer.exr", gray(2, **fog))
         report = self.report(layer, layer, code=6)
         self.assertEqual(report["layers"]["inscatter"]["non_finite"], {"test": 16, "reference": 16})
         self.assertIn("ignored", run("compare", layer, layer).stdout)
-        nothing = self.picture("nothing.exr", grey(NAN))
+        nothing = self.picture("nothing.exr", gray(NAN))
         self.assertIsNone(self.report(nothing, self.pair[1], code=6)["metrics"]["rmse"])
         self.assertEqual(run("compare", nothing, self.pair[1], "--fail-above", "rmse=1e9").returncode, 1)
 
 
 class HeatMaps(Compare):
     def test_png_of_the_picture_and_its_scale(self):
-        a, b = self.picture("a.exr", grey(1), 80, 50), self.picture("b.exr", grey(lambda x, y: 1 + x / 80), 80, 50)
+        a, b = self.picture("a.exr", gray(1), 80, 50), self.picture("b.exr", gray(lambda x, y: 1 + x / 80), 80, 50)
         for kind in ("error", "flip"):
             path = self.path(f"{kind}.png")
             result = self.succeed("compare", a, b, "--heatmap", path, "--map", kind)
@@ -213,7 +213,7 @@ class HeatMaps(Compare):
         self.assertNotEqual(self.path("error.png").read_bytes(), self.path("flip.png").read_bytes())
 
     def test_where_it_cannot_be_written(self):
-        pair = self.picture("a.exr", grey(1)), self.picture("b.exr", grey(1))
+        pair = self.picture("a.exr", gray(1)), self.picture("b.exr", gray(1))
         self.refuse(2, ["--heatmap"], "compare", *pair, "--heatmap", self.path("heat.jpg"))
         self.refuse(2, ["--map"], "compare", *pair, "--heatmap", self.path("heat.png"), "--map", "depth")
         self.refuse(2, ["--map", "--heatmap"], "compare", *pair, "--map", "flip")
@@ -222,22 +222,22 @@ class HeatMaps(Compare):
 
 class Refusals(Compare):
     def test_pictures_that_do_not_match(self):
-        reference = self.picture("b.exr", grey(1))
-        wide = self.picture("a.exr", grey(1), 17, 8)
+        reference = self.picture("b.exr", gray(1))
+        wide = self.picture("a.exr", gray(1), 17, 8)
         self.refuse(3, ["a.exr", "17 x 8", "b.exr", "16 x 8"], "compare", wide, reference)
-        crop = self.picture("crop.exr", grey(1), 8, 4, display=(16, 8), low=(2, 1))
+        crop = self.picture("crop.exr", gray(1), 8, 4, display=(16, 8), low=(2, 1))
         self.refuse(3, ["8 x 4 at 2,1", "--crop"], "compare", crop, reference)
         self.assertEqual(self.report(crop, crop)["pixels"], 32)
         self.refuse(3, ["luminance"], "compare", self.picture("y.exr", {"Y": 1}), reference)
 
-    def test_files_without_colour(self):
-        reference = self.picture("b.exr", grey(1))
+    def test_files_without_color(self):
+        reference = self.picture("b.exr", gray(1))
         depth = self.picture("depth.exr", {"Z": 1, "A": 1, "view.combined.R": 1})
         self.refuse(3, ["depth.exr", "no color", "Z", "view.combined.R"], "compare", depth, reference)
         self.refuse(3, ["depth.exr"], "compare", reference, depth)
 
     def test_files_that_are_missing_or_something_else(self):
-        reference = self.picture("b.exr", grey(1))
+        reference = self.picture("b.exr", gray(1))
         self.refuse(4, ["nobody.exr"], "compare", self.path("nobody.exr"), reference)
         self.refuse(4, ["nobody.exr"], "compare", reference, self.path("nobody.exr"))
         notes = self.write("notes.exr", "some notes, long enough to be read")

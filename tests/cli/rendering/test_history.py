@@ -98,7 +98,7 @@ class Noise(History):
 
 class Left(History):
     def test_four_frames_after_a_lamp_goes_out_two_percent_of_it_are_left_at_most(self):
-        # The sun goes on shining, so that clamping to what neighbours show does not hide all by itself. Compared with a
+        # The sun goes on shining, so that clamping to what neighbors show does not hide all by itself. Compared with a
         # lamp that never shone, whose history is as old as that since the switch.
         for mode in REMEMBERING:
             self.render(self.film(intensity=keys((0, 60), (5, 0)), sun=2), mode, "out", "--frames", "4,8", history=8)

@@ -17,7 +17,7 @@ HALF_SPHERE = "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0
 
 
 def png(size, pixel):
-    """A grey PNG; pixel(x, y) of 0..255."""
+    """A gray PNG; pixel(x, y) of 0..255."""
     def part(kind, body):
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
     rows = b"".join(b"\0" + bytes(pixel(x, y) for x in range(size[0])) for y in range(size[1]))

@@ -197,24 +197,24 @@ class ColoredFog(LayersTest):
                 self.assertAlmostEqual(channels["A"][i], 1 - mean, delta=2e-6, msg=mode)
                 if mode != "march":  # froxels mix transmittances, not depths
                     continue
-                metres = [-math.log(value) / extinction for value, extinction in zip(own, self.EXTINCTION)]
+                meters = [-math.log(value) / extinction for value, extinction in zip(own, self.EXTINCTION)]
                 # One length for all channels; at the edges, where a pixel has several rays, means of exp(-length) are
                 # those of a shorter one the more the fog dims.
-                self.assertGreater(metres[0] - metres[1], -1e-4)
-                self.assertGreater(metres[1] - metres[2], -1e-4)
-                foggy += metres[2] > 1 and metres[0] - metres[2] < 1e-3
+                self.assertGreater(meters[0] - meters[1], -1e-4)
+                self.assertGreater(meters[1] - meters[2], -1e-4)
+                foggy += meters[2] > 1 and meters[0] - meters[2] < 1e-3
             if mode == "march":
                 self.assertGreater(foggy, 20)
 
-    def test_every_frame_has_the_layer_and_grey_scenes_have_none(self):
+    def test_every_frame_has_the_layer_and_gray_scenes_have_none(self):
         white = {"keys": [[0, list(self.EXTINCTION)], [1, [0.5, 0.5, 0.5]]]}
         path = self.write("keyed.json", lit_scene(lights=LAMPS, media=[fog(extinction=white)], frame_rate=1, frames="0-1"))
         self.succeed("render", path, "-o", self.path("k.####.exr"), "--samples", "2", "--float", "-q")
         for frame in (0, 1):
             channels = read_channels(self.path(f"k.{frame:04}.exr"))
             self.assertEqual(channels["transmittance.R"] == channels["transmittance.B"], frame == 1)
-        self.assertIn("transmittance.T", self.render(self.rich, "grey.exr", aov="transmittance")[0])
-        self.assertNotIn("transmittance.R", self.render(self.rich, "grey.exr", aov="transmittance")[0])
+        self.assertIn("transmittance.T", self.render(self.rich, "gray.exr", aov="transmittance")[0])
+        self.assertNotIn("transmittance.R", self.render(self.rich, "gray.exr", aov="transmittance")[0])
         # What is there is used again.
         made = self.path("k.0000.exr").stat().st_mtime_ns
         self.succeed("render", path, "-o", self.path("k.####.exr"), "--samples", "2", "--float", "-q", "--resume")

@@ -85,18 +85,18 @@ class Modes(ProgramTest):
     def test_a_style_is_written_into_the_header(self):
         self.succeed("render", self.scene, "-o", self.path("plain.exr"), "--samples", "1")
         self.succeed("render", self.scene, "-o", self.path("styled.exr"), "--samples", "1", "--set", "style.light_depth=0.5")
-        self.assertNotIn("stylised", self.attributes(self.path("plain.exr")))
-        self.assertEqual(self.attributes(self.path("styled.exr"))["stylised"], "1")
+        self.assertNotIn("stylized", self.attributes(self.path("plain.exr")))
+        self.assertEqual(self.attributes(self.path("styled.exr"))["stylized"], "1")
         result = self.succeed("compare", self.path("styled.exr"), self.path("plain.exr"))
-        self.assertIn("stylised", result.stdout + result.stderr)
+        self.assertIn("stylized", result.stdout + result.stderr)
         report = json.loads(self.succeed("--json", "compare", self.path("styled.exr"), self.path("plain.exr")).stdout)
-        self.assertTrue(report["stylised"])
+        self.assertTrue(report["stylized"])
 
     def test_the_truth_has_no_style(self):
         result = self.succeed("render", self.scene, "-o", self.path("out.exr"), "--mode", "path", "--samples", "1",
                               "--set", "style.density=2")
         self.assertIn("style.density=2 has no effect", result.stderr)
-        self.assertNotIn("stylised", self.attributes(self.path("out.exr")))
+        self.assertNotIn("stylized", self.attributes(self.path("out.exr")))
 
     def test_history_is_noted_where_it_changes_nothing(self):
         result = self.succeed("render", self.scene, "-o", self.path("out.exr"), "--samples", "1", "--history", "3")

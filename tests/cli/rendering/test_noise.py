@@ -32,7 +32,7 @@ class Layers(ProgramTest):
         for c in "RGB":
             self.assertGreater(channels[f"Variance.{c}"]["maximum"], 0)
             halves = (channels[f"half_a.{c}"]["mean"] + channels[f"half_b.{c}"]["mean"]) / 2
-            self.assertAlmostEqual(halves, channels[c]["mean"], delta=2**-11 * halves)  # colours are halves
+            self.assertAlmostEqual(halves, channels[c]["mean"], delta=2**-11 * halves)  # colors are halves
         self.assertEqual(attributes["tyndall:samples"], "128")
         frame = json.loads(stats.read_text())["frames"][0]
         self.assertEqual(frame["samples"], 128)

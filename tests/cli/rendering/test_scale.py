@@ -6,7 +6,7 @@ from cli.rendering.moved_scenes import write_moved
 from cli.program import SOURCE, ProgramTest, run
 
 MODES = "march froxel shadow-map shadow-volume cone billboard radial-blur path".split()
-IN_METRES = {"radial_blur.lamp_size": 0.3, "billboard.near_fade": 0.6, "billboard.soft_depth": 0.4,
+IN_METERS = {"radial_blur.lamp_size": 0.3, "billboard.near_fade": 0.6, "billboard.soft_depth": 0.4,
              "billboard.scroll": 0.05, "cone.noise_size": 0.6, "cone.noise_speed": 0.2}
 LAMPS = {
     "tyndall": 1,
@@ -22,7 +22,7 @@ LAMPS = {
 
 class Scale(ProgramTest):
     def render(self, scene, factor):
-        settings = [text for name, value in IN_METRES.items() for text in ("--set", f"{name}={value * factor:.9g}")]
+        settings = [text for name, value in IN_METERS.items() for text in ("--set", f"{name}={value * factor:.9g}")]
         result = run("render", scene, "-o", scene.with_suffix(".exr"), "--mode", ",".join(MODES), "--res", "64x36",
                      "--frames", "1", "--quality", "draft", "--seed", "1", "-q", *settings)
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -55,7 +55,7 @@ class Scale(ProgramTest):
 
     def test_columns_far_from_the_origin(self):
         moved = self.check(SOURCE / "scenes/pillars.json", {}, {(1e7, 0, -1e7): 1e-3, (1e6, 2e5, -3e6): 1e-3})
-        # Places are told in the world, to the millimetre.
+        # Places are told in the world, to the millimeter.
         story = json.loads(run("explain", moved, "--pixel", "32,18", "--res", "64x36", "--frame", "1", "--json",
                                "-q").stdout)
         for value, expected in zip(story["origin"], (1e6 - 1.6, 2e5 + 2.0, -3e6 + 9.5)):

@@ -5,7 +5,7 @@ import unittest
 from cli.exr import read_channels
 from cli.program import CORPORA, ProgramTest, lit_scene, recipe
 
-SHUTTER = {"open": -3, "close": 3}  # of frames of 1/24 s, in a wind of half a metre per second: four voxels of 1/16 m
+SHUTTER = {"open": -3, "close": 3}  # of frames of 1/24 s, in a wind of half a meter per second: four voxels of 1/16 m
 VELOCITY = {"grids": {"velocity": "vel"}}
 
 

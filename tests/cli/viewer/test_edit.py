@@ -71,7 +71,7 @@ class Editing(ViewerTest):
                               "key ctrl+y", "key ctrl+s", "key ctrl+shift+z"], "--samples", 1)
         self.assertIn('"ambient": 0.25', self.text())
 
-    def test_sliders_and_colours_of_the_page_change_the_scene(self):
+    def test_sliders_and_colors_of_the_page_change_the_scene(self):
         drags = [f"drag {VALUES[0]},{y} {VALUES[1]},{y}" for y in SLIDERS]
         self.view(self.film, ["wait idle", "tab lights", "select lights/lamp", *drags, "save"], "--samples", 1)
         lamp = self.text().split("\n")[6]
@@ -85,7 +85,7 @@ class Editing(ViewerTest):
         self.view(self.film, [*begin, f"snapshot {self.path('a.png')}", "save"], "--samples", 1)
         x, y, z = map(float, re.search(r'"lamp".*"position": \[([^]]*)\]', self.text()).group(1).split(","))
         self.assertEqual(self.text(), FILM.replace("[0, 0.5, 1.0]", f"[{x}, {y}, {z}]"), "the camera stood still")
-        scale = 2 * math.hypot(2, 0.1) * math.tan(math.radians(22.5)) / 526  # metres a pixel, about
+        scale = 2 * math.hypot(2, 0.1) * math.tan(math.radians(22.5)) / 526  # meters a pixel, about
         self.assertAlmostEqual(x, 133 * scale, delta=0.03)
         self.assertAlmostEqual(y, 0.5 + 60 * scale, delta=0.03)
         self.assertTrue(self.path("a.png").read_bytes() == self.rendered())

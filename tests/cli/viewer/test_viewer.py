@@ -135,7 +135,7 @@ class CommandLine(ViewerTest):
         self.check_refusal(self.plain(film, "--mode", "marsh"), 2, "marsh")
         self.check_refusal(self.plain(film, "--set", "march.nodes=x"), 2, "march.nodes")
         self.check_refusal(self.plain(film, "--fps", "0"), 2, "--fps")
-        self.check_refusal(self.plain(film, "--colour"), 2, "--colour")
+        self.check_refusal(self.plain(film, "--color"), 2, "--color")
         self.check_refusal(self.plain(), 2, "SCENE")
         self.check_refusal(self.plain(film, "--script", "missing.txt"), 4, "missing.txt")
         self.check_refusal(self.plain(film, "--script", self.write("s.txt", "jump")), 3, "s.txt:1", "jump")

@@ -16,7 +16,7 @@ constexpr double pixels = 128 * 96;
 
 Image<vec3> flat(float value) { return Image<vec3>(size, vec3(value)); }
 
-// Grey noise of its own for each seed, evenly spread over ± amplitude: variance amplitude² / 3.
+// Gray noise of its own for each seed, evenly spread over ± amplitude: variance amplitude² / 3.
 Image<vec3> noisy(float value, float amplitude, uint32_t seed) {
     Image<vec3> image = flat(value);
     for (size_t i = 0; i < image.pixels.size(); ++i)
@@ -222,7 +222,7 @@ TEST(Chart, IsDrawnInAFileOfItsOwnThatFollowsTheScreen) {
     EXPECT_NE(file.find("class='paper'"), file.npos);
 }
 
-TEST(Chart, DrawsModesInColoursAndShapesOfTheirOwn) {
+TEST(Chart, DrawsModesInColorsAndShapesOfTheirOwn) {
     std::set<std::string> colors;
     std::set<int> shapes;
     for (const Mode& mode : modes()) {

@@ -180,7 +180,7 @@ TEST(Explain, TheRayGoesOnBehindASheet) {
 TEST(Explain, StepsAddUpToTheReference) {
     Light soft = point_light({0.5f, 2, -4}, 3);
     soft.radius = 0.1f, soft.name = "soft";
-    Light near = point_light({0, 0.01f, -6}, 0.1f); // a centimetre off the ray
+    Light near = point_light({0, 0.01f, -6}, 0.1f); // a centimeter off the ray
     near.intensity = {0.1f, 0.2f, 0.3f};
     const Medium grid = [] {
         Medium medium =

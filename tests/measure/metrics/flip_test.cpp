@@ -27,7 +27,7 @@ Image<vec3> mostly_black(Image<vec3> image, bool noise) {
 }
 }
 
-TEST(FlipColor, KnownColours) {
+TEST(FlipColor, KnownColors) {
     // White is (100, 0, 0) in YCxCz and CIELAB; green and blue in CIELAB are (87.74, -86.18, 83.18), (32.30, 79.19,
     // -107.86) to the rounding of the published tables, here with the Hunt factor 0.01 L.
     const auto near = [](vec3 a, vec3 b, float tolerance) {

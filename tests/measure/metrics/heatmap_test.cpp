@@ -7,7 +7,7 @@
 
 namespace tyndall::test {
 namespace {
-// CIE lightness of an sRGB colour, 0..100.
+// CIE lightness of an sRGB color, 0..100.
 double lightness(Color8 color) {
     double y = 0;
     const double weights[] = {0.2126, 0.7152, 0.0722};

@@ -8,8 +8,8 @@ namespace tyndall::test {
 namespace {
 constexpr float nan_value = std::numeric_limits<float>::quiet_NaN();
 
-// Grey pixels from left to right.
-Image<vec3> grey_row(const std::vector<float>& values) {
+// Gray pixels from left to right.
+Image<vec3> gray_row(const std::vector<float>& values) {
     Image<vec3> image({static_cast<int>(values.size()), 1});
     for (size_t i = 0; i < values.size(); ++i) image.pixels[i] = vec3(values[i]);
     return image;
@@ -49,7 +49,7 @@ TEST(Errors, PercentilesAndTrimmingTakeTheRightValues) {
     std::vector<float> off(1000);
     for (size_t i = 0; i < off.size(); ++i) off[i] = 1 + static_cast<float>(i) / 1024;
     std::swap(off[3], off[999]);
-    Errors e = measure_errors(grey_row(off), grey_row(std::vector<float>(1000, 1)));
+    Errors e = measure_errors(gray_row(off), gray_row(std::vector<float>(1000, 1)));
     EXPECT_DOUBLE_EQ(e.p95, 949.0 / 1024);   // the 2850th value
     EXPECT_DOUBLE_EQ(e.p99_9, 998.0 / 1024); // the 2997th
     EXPECT_DOUBLE_EQ(e.most, 999.0 / 1024);
@@ -124,11 +124,11 @@ TEST(Errors, HugeValuesDoNotOverflow) {
 
 TEST(Errors, PooledFramesAreOnePicture) {
     // Two frames of different means and different numbers of finite pixels, against both side by side.
-    const Image<vec3> r1 = grey_row({1, 2, 3}), t1 = grey_row({1.5f, 2, 2});
-    const Image<vec3> r2 = grey_row({10, 20, 30}), t2 = grey_row({nan_value, 26, 30});
+    const Image<vec3> r1 = gray_row({1, 2, 3}), t1 = gray_row({1.5f, 2, 2});
+    const Image<vec3> r2 = gray_row({10, 20, 30}), t2 = gray_row({nan_value, 26, 30});
     const Errors frames[] = {measure_errors(t1, r1), measure_errors(t2, r2)};
     const Errors all = pooled(frames);
-    const Errors one = measure_errors(grey_row({1.5f, 2, 2, nan_value, 26, 30}), grey_row({1, 2, 3, 10, 20, 30}));
+    const Errors one = measure_errors(gray_row({1.5f, 2, 2, nan_value, 26, 30}), gray_row({1, 2, 3, 10, 20, 30}));
     EXPECT_EQ(all.pixels, one.pixels);
     EXPECT_EQ(all.non_finite_test, one.non_finite_test);
     EXPECT_DOUBLE_EQ(all.mean_reference, one.mean_reference);
@@ -141,21 +141,21 @@ TEST(Errors, PooledFramesAreOnePicture) {
 TEST(Flicker, ByHand) {
     // Errors of the two pixels: 0 0, then 1 0, then 1 -2: changes 1 0, 0 -2. Mean of the reference: 4.
     Flicker flicker;
-    flicker.add_frame(grey_row({2, 2}), grey_row({2, 2}));
+    flicker.add_frame(gray_row({2, 2}), gray_row({2, 2}));
     EXPECT_TRUE(std::isnan(flicker.value()));
-    flicker.add_frame(grey_row({5, 4}), grey_row({4, 4}));
+    flicker.add_frame(gray_row({5, 4}), gray_row({4, 4}));
     EXPECT_DOUBLE_EQ(flicker.value(), std::sqrt(1.0 / 2) / 3);
-    flicker.add_frame(grey_row({7, 4}), grey_row({6, 6}));
+    flicker.add_frame(gray_row({7, 4}), gray_row({6, 6}));
     EXPECT_DOUBLE_EQ(flicker.value(), std::sqrt((1.0 + 4) / 4) / 4);
 }
 
 TEST(Flicker, ConstantErrorDoesNotFlicker) {
     Flicker still, moving, pulsing;
     for (int frame = 0; frame < 4; ++frame) {
-        const Image<vec3> reference = grey_row({1, 2, static_cast<float>(frame)});
-        still.add_frame(grey_row({1.5f, 1, 3}), grey_row({1, 2, 3}));
-        moving.add_frame(grey_row({1.5f, 1, static_cast<float>(frame) + 2}), reference);
-        pulsing.add_frame(grey_row({frame % 2 ? 1.25f : 0.75f, 2, 3}), grey_row({1, 2, 3}));
+        const Image<vec3> reference = gray_row({1, 2, static_cast<float>(frame)});
+        still.add_frame(gray_row({1.5f, 1, 3}), gray_row({1, 2, 3}));
+        moving.add_frame(gray_row({1.5f, 1, static_cast<float>(frame) + 2}), reference);
+        pulsing.add_frame(gray_row({frame % 2 ? 1.25f : 0.75f, 2, 3}), gray_row({1, 2, 3}));
     }
     EXPECT_EQ(still.value(), 0);
     EXPECT_EQ(moving.value(), 0);
@@ -164,9 +164,9 @@ TEST(Flicker, ConstantErrorDoesNotFlicker) {
 
 TEST(Flicker, LeavesOutWhatIsNotFinite) {
     Flicker flicker;
-    flicker.add_frame(grey_row({1, 1}), grey_row({1, 1}));
-    flicker.add_frame(grey_row({infinity, 2}), grey_row({1, 1}));
-    flicker.add_frame(grey_row({1, 2}), grey_row({1, nan_value}));
+    flicker.add_frame(gray_row({1, 1}), gray_row({1, 1}));
+    flicker.add_frame(gray_row({infinity, 2}), gray_row({1, 1}));
+    flicker.add_frame(gray_row({1, 2}), gray_row({1, nan_value}));
     EXPECT_DOUBLE_EQ(flicker.value(), 1); // the one change that is known: from 1 to 2
 }
 }

@@ -32,7 +32,7 @@ TEST(Comparison, FramesHaveToMatch) {
     EXPECT_THAT(refusal(other, reference), testing::HasSubstr("1,0"));
     other = picture(shaft({8, 12}, 0, 0)), other.display = size;
     EXPECT_THAT(refusal(other, reference), testing::HasSubstr("--crop"));
-    other = reference, other.grey = true;
+    other = reference, other.gray = true;
     EXPECT_THAT(refusal(other, reference), testing::HasSubstr("luminance only"));
 }
 

@@ -44,7 +44,7 @@ TEST(Ssim, CheckerboardsByHand) {
 }
 
 TEST(Ssim, LooksAtTheDisplayedPicture) {
-    // Even pictures: the reference becomes middle grey, the test is half of it.
+    // Even pictures: the reference becomes middle gray, the test is half of it.
     const double r = srgb_encoded(aces(0.18)), t = srgb_encoded(aces(0.09));
     const Image<vec3> reference = constant(vec3(40), {12, 12}), test = constant(vec3(20), {12, 12});
     EXPECT_NEAR(mean_luminance(reference), 40, 1e-5);

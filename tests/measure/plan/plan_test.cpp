@@ -175,7 +175,7 @@ TEST(Plan, WhereShadowsFallTheConeStaysBehindAndLooksTakeNoPart) {
     EXPECT_NE(plan.certificate().find(std::string(plan.chosen.mode->name)), std::string::npos);
 }
 
-// At the centres of pixels the march has no noise, path tracing has; and it shadows ambient light.
+// At the centers of pixels the march has no noise, path tracing has; and it shadows ambient light.
 TEST(Plan, PathTracingIsAsNoisyAsItIsAndTakesNoPartInAmbientLight) {
     TestScene stage =
         make_scene({homogeneous_medium(0.2f, room)}, {spot_light({-3, 2.5f, 0}, {3, -2, 0}, 50, 0.2f, 0.3f)},
@@ -206,7 +206,7 @@ TEST(Plan, SamplesAreThoseThatTheBoundTakes) {
 }
 
 // Every plan of these scenes is kept: rendered as planned, the picture is as near to the truth as wanted. At the
-// centres of pixels: elsewhere in them lamps and bright edges make pictures noisier than the targets for minutes.
+// centers of pixels: elsewhere in them lamps and bright edges make pictures noisier than the targets for minutes.
 class PlannedScene : public testing::TestWithParam<const char*> {};
 
 View view_of_center(const Scene& scene, const Moment& moment) {

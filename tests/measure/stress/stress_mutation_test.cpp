@@ -67,7 +67,7 @@ template<bool at_end> ScatterFunction plain_march(const View&, const Snapshot& s
         for (size_t i = 0; i < results.size(); ++i) {
             const Ray& ray = batch.rays[i];
             const Interval<float> inside = clip(fog.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
-            const float step = inside.length() / steps, depth = grey_extinction(fog.optics) * step;
+            const float step = inside.length() / steps, depth = gray_extinction(fog.optics) * step;
             float passed = 1;
             results[i] = {};
             for (int s = 0; s < steps; ++s) {

@@ -1,4 +1,4 @@
-// The stability suite, case by case, and that its judgement is sound.
+// The stability suite, case by case, and that its judgment is sound.
 #include "measure/stress/stress.h"
 #include "modes/mode.h"
 #include "modes/shared_limitations.h"
@@ -60,7 +60,7 @@ TEST(StressCases, AreManyAndWellFormed) {
     }
 }
 
-// --- the judgement ---------------------------------------------------------------------------------------------------
+// --- the judgment ---------------------------------------------------------------------------------------------------
 StressPoint point_of(double value, double error, double excused_up_to = -1) {
     StressPoint point;
     point.value = value, point.error = error, point.allowed = 0.1, point.excused_up_to = excused_up_to;

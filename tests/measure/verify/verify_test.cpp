@@ -20,7 +20,7 @@ float normal(uint32_t pixel, uint32_t seed) {
 struct NoisyPicture {
     Image<vec3> noisy, variance, reference;
 };
-// A gradient with grey noise of 5 % per pixel, times `gain`.
+// A gradient with gray noise of 5 % per pixel, times `gain`.
 NoisyPicture noisy_picture(float gain, float said_variance = 1) {
     const ivec2 size(640, 320);
     NoisyPicture p{Image<vec3>(size), Image<vec3>(size), Image<vec3>(size)};

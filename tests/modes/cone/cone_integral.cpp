@@ -39,7 +39,7 @@ double depth(std::span<const Medium> media, dvec3 origin, dvec3 direction, doubl
         const double h0 = origin.y + in.low * direction.y - medium.density.height_base;
         const double h1 = origin.y + in.high * direction.y - medium.density.height_base;
         const bool height = medium.density.kind == DensityKind::height;
-        sum += grey_extinction(medium.optics) * in.length() *
+        sum += gray_extinction(medium.optics) * in.length() *
                (height ? mean_density(h0, h1, medium.density.height_falloff) : 1);
     }
     return sum;
@@ -99,7 +99,7 @@ double cone_integral(const Light& light, std::span<const Medium> media, const Ra
                 continue;
             const double height = std::max(point.y - medium.density.height_base, 0.0) / medium.density.height_falloff;
             const double density = medium.density.kind == DensityKind::height ? std::exp(-height) : 1;
-            scattered += grey_extinction(medium.optics) * density *
+            scattered += gray_extinction(medium.optics) * density *
                          phase_value_of<double>(medium.optics.phase, glm::dot(to_light, d));
         }
         const double dim =

@@ -29,7 +29,7 @@ Light bulb() { return point_light({-0.5f, 0.2f, 0.3f}, 5); }
 // angle seen from the lamp.
 double beam_through(const Light& light, const Medium& medium, const Ray& ray) {
     constexpr int count = 400;
-    const double sigma = grey_extinction(medium.optics);
+    const double sigma = gray_extinction(medium.optics);
     const dvec3 origin(ray.origin), direction(ray.direction), lamp(light.position);
     const Interval<double> inside = intersection({0, ray.t_max}, light_reach(light, origin, direction));
     if (inside.empty()) return 0;
@@ -159,7 +159,7 @@ TEST(FroxelBeam, LampsTooManyForTheirShadowsAreDrawnByFroxels) {
               0.12);
 }
 
-// The shadows of a lamp with a radius are the mean of those of its points, and far from those of its centre.
+// The shadows of a lamp with a radius are the mean of those of its points, and far from those of its center.
 TEST(FroxelBeam, ShadowsOfALampWithARadiusAreSoft) {
     const Medium mist = homogeneous_medium(0.4f, {vec3(-1), vec3(1)});
     const Medium banks = medium_of(unit_volume(16, [](vec3) { return 1.0f; }), 0.4f);
@@ -214,7 +214,7 @@ TEST(FroxelBeam, FogNextToALampIsThatOfTheReference) {
     EXPECT_LT(relative_rmse(scattered(froxels(view, stage.snapshot, {}), rays), truth), 0.1);
 }
 
-TEST(FroxelBeam, ARayDoesNotKnowItsNeighboursNorTheThreads) {
+TEST(FroxelBeam, ARayDoesNotKnowItsNeighborsNorTheThreads) {
     const TestScene stage = beam_behind_slab();
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0});
     const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);

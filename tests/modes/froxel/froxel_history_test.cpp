@@ -31,7 +31,7 @@ protected:
     Settings settings() const {
         Settings result;
         result.of<FroxelSettings>().tile = 2;
-        result.of<FroxelSettings>().amortise = std::get<0>(GetParam()),
+        result.of<FroxelSettings>().amortize = std::get<0>(GetParam()),
         result.of<FroxelSettings>().visibility = std::get<1>(GetParam());
         return result;
     }
@@ -149,7 +149,7 @@ TEST(FroxelHistory, AStandingCameraFindsWhatItLeft) {
 }
 
 TEST(FroxelHistory, KnowsHowMuchWiderWhatItFindsBecame) {
-    // An orthographic picture moved aside by half a tile: means of two neighbours. By a whole one: the neighbours.
+    // An orthographic picture moved aside by half a tile: means of two neighbors. By a whole one: the neighbors.
     const TestScene stage = lit_stage();
     Camera camera = moved_view(0).camera;
     camera.ortho_height = 4;

@@ -18,10 +18,10 @@ TestScene stage() {
 
 View still_view(float x = 0) { return view_of({x, 1.2f, 9}, {0, 1, 0}); }
 
-FroxelScene scene_of(const Snapshot& snapshot, bool amortise = false) {
+FroxelScene scene_of(const Snapshot& snapshot, bool amortize = false) {
     FroxelScene scene;
     scene.snapshot = snapshot;
-    scene.settings = with_tile({}, still_view().size), scene.settings.amortise = amortise;
+    scene.settings = with_tile({}, still_view().size), scene.settings.amortize = amortize;
     for (const Light& light : snapshot.lights) {
         scene.depths.push_back(make_light_depth(scene.snapshot, light, LightTransmittance::grid, 32));
         scene.cones.push_back(cone_falloff(light)), scene.columns.emplace_back();
@@ -75,9 +75,9 @@ TEST(FroxelStatics, WhatMovesIsLookedAtAnew) {
 }
 
 TEST(FroxelStatics, KnownFogGivesTheSameBits) {
-    for (const bool amortise : {false, true}) {
+    for (const bool amortize : {false, true}) {
         const TestScene here = stage();
-        const FroxelScene scene = scene_of(here.snapshot, amortise);
+        const FroxelScene scene = scene_of(here.snapshot, amortize);
         FroxelStatics statics = make_statics(still_view(), here.snapshot, scene.settings, nullptr);
         for (int frame = 0; frame < 3; ++frame) {
             const FroxelLight plain = fill_froxels(scene, statics.grid, statics.tiles, {-1, frame});
@@ -90,13 +90,13 @@ TEST(FroxelStatics, KnownFogGivesTheSameBits) {
 }
 
 // Fog that moves by a hair is found anew in each frame: what settles must come as close to a picture without
-// amortising.
+// amortizing.
 TEST(FroxelStatics, SettledFogIsAsGoodAsFogFoundAnew) {
-    const auto after_frames = [](bool amortise, bool restless, float turn) {
+    const auto after_frames = [](bool amortize, bool restless, float turn) {
         TestScene here = stage();
         const Snapshot statics = here.snapshot;
         Settings settings;
-        settings.of<FroxelSettings>().tile = 4, settings.of<FroxelSettings>().amortise = amortise;
+        settings.of<FroxelSettings>().tile = 4, settings.of<FroxelSettings>().amortize = amortize;
         History history;
         std::vector<Scatter> results;
         for (int frame = 0; frame < 24; ++frame) {
@@ -104,7 +104,7 @@ TEST(FroxelStatics, SettledFogIsAsGoodAsFogFoundAnew) {
             here.snapshot.lights[0].direction = glm::normalize(vec3(0.3f + turn * along, -1, 0.1f));
             if (restless)
                 here.snapshot.media[0].optics.extinction =
-                    vec3(grey_extinction(statics.media[0].optics) * (1 + 1e-6f * along));
+                    vec3(gray_extinction(statics.media[0].optics) * (1 + 1e-6f * along));
             results = scattered(froxels(still_view(), here.snapshot, settings, &history),
                                 pixel_rays(still_view(), here.snapshot, 12));
         }

@@ -111,7 +111,7 @@ TEST(Froxel, FogHalfInShadowHasTheReferencesEnergy) {
 }
 
 TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
-    // The lamp is as large as a pixel, so that single rays tell how bright pixels are; froxels are half a metre wide.
+    // The lamp is as large as a pixel, so that single rays tell how bright pixels are; froxels are half a meter wide.
     const View view = view_of({0, 0, 6}, {0, 0, 0});
     double least[2] = {infinity, infinity}, most[2] = {};
     for (int i = 0; i < 6; ++i) {
@@ -163,7 +163,7 @@ bool same(const Scatter& a, const Scatter& b) {
     return a.radiance == b.radiance && a.transmittance == b.transmittance && a.validity == b.validity;
 }
 
-TEST(Froxel, ARayDoesNotKnowItsNeighboursNorTheThreads) {
+TEST(Froxel, ARayDoesNotKnowItsNeighborsNorTheThreads) {
     const TestScene stage = busy_scene();
     const View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 8);

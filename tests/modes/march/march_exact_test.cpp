@@ -139,7 +139,7 @@ TEST(MarchExact, GridFogMatchesMidpointSums) {
         constexpr int steps = 20000;
         const double dt = double(ray.t_max) / steps;
         dvec3 expected(0);
-        double depth = 0, highest = 0; // the most light a metre adds
+        double depth = 0, highest = 0; // the most light a meter adds
         for (int i = 0; i < steps; ++i) {
             const dvec3 before = expected;
             const vec3 point = ray.at(static_cast<float>((i + 0.5) * dt));
@@ -148,7 +148,7 @@ TEST(MarchExact, GridFogMatchesMidpointSums) {
                 float x[16], y[16], z[16], density[16];
                 std::fill(x, x + 16, point.x), std::fill(y, y + 16, point.y), std::fill(z, z + 16, point.z);
                 densities(media[m], x, y, z, density);
-                total += extinction[m] = double(grey_extinction(media[m].optics)) * density[0];
+                total += extinction[m] = double(gray_extinction(media[m].optics)) * density[0];
             }
             if (total == 0) continue;
             for (const Light& light : stage.snapshot.lights) {
@@ -205,7 +205,7 @@ TEST(MarchExact, HalvingEveryBoundChangesNothing) {
 }
 
 TEST(MarchExact, ASmallDenseGridDrawsItsShadowInWideHaze) {
-    // Kilometres of haze under a striped grid of a metre: its shadow on the ray has to be found and resolved.
+    // Kilometers of haze under a striped grid of a meter: its shadow on the ray has to be found and resolved.
     const auto stripes = [](vec3 p) { return 0.5f + 0.5f * std::sin(40 * p.x); };
     std::vector<Medium> media{medium_of(unit_volume(32, stripes), 8),
                               homogeneous_medium(1e-3f, {vec3(-900), vec3(900, 2, 900)})};
@@ -219,7 +219,7 @@ TEST(MarchExact, ASmallDenseGridDrawsItsShadowInWideHaze) {
             return double(1e-3f) / four_pi * at.irradiance.x *
                    std::exp(-double(1e-3f) * t - optical_depth(media, {point, at.to_light, at.distance}));
         };
-        // What the grid takes away is what matters: it stands within two metres of the middle.
+        // What the grid takes away is what matters: it stands within two meters of the middle.
         const std::vector<Medium> haze{media[1]};
         const double with = integral(integrand, 0, 846, 2000) + integral(integrand, 846, 854, 4000) +
                             integral(integrand, 854, 1700, 2000);
@@ -285,7 +285,7 @@ TEST(MarchExact, MarchesFromDrawnNodesAreRightOnTheAverage) {
     const std::vector<Scatter> all = of_jitter(prepared(0), 0.5f), enough = of_jitter(prepared(65536), 0.25f);
     const ScatterFunction drawn = prepared(8);
     // A sum over shifts of one node after the other is the sum over nodes where all shifts come equally often: with 512
-    // of them, each node is off by 1/512 of a drawing at most, and errors of neighbours cancel.
+    // of them, each node is off by 1/512 of a drawing at most, and errors of neighbors cancel.
     constexpr int shifts = 512;
     std::vector<double> mean(16, 0.0);
     double spread = 0, steps = 0, all_steps = 0;

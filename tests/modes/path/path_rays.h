@@ -10,7 +10,7 @@ struct Snapshot;
 }
 
 namespace tyndall::test {
-// Lines evenly spread over all lines through a ball, up to where they leave its neighbourhood: the mean of their light
+// Lines evenly spread over all lines through a ball, up to where they leave its neighborhood: the mean of their light
 // is in proportion to what the ball sends out.
 std::vector<Ray> lines_through(vec3 center, float radius, int count);
 

@@ -82,7 +82,7 @@ TEST(Path, FurnaceWithSurfacesAndOverlappingFogIsWhite) {
 }
 
 TEST(Path, GlowingFurnaceIsEven) {
-    // A closed box whose walls glow with 1 - base colour: everything inside has radiance 1, fog of albedo 1 too.
+    // A closed box whose walls glow with 1 - base color: everything inside has radiance 1, fog of albedo 1 too.
     Scene scene;
     scene.materials = {lambert(vec3(0.6f, 0.3f, 0), vec3(0.4f, 0.7f, 1))};
     add_mesh(scene, box_of(vec3(-1), vec3(2), 0));
@@ -180,7 +180,7 @@ TEST(Path, EmissionAbsorptionIsItsClosedForm) {
 }
 
 TEST(Path, SurfaceUnderFogIsItsClosedForm) {
-    // Sun at 60 degrees onto a floor below one metre of fog, seen straight down: base/π · E mu0 · e^(-s/mu0) · e^(-s).
+    // Sun at 60 degrees onto a floor below one meter of fog, seen straight down: base/π · E mu0 · e^(-s/mu0) · e^(-s).
     Scene scene;
     scene.materials = {lambert({0.8f, 0.4f, 0.2f})};
     add_mesh(scene, floor_of(-0.5f, 100, 0));

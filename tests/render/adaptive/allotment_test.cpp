@@ -152,7 +152,7 @@ TEST(Allotment, TilesOfManySamplesHaveMoreBatches) {
     EXPECT_EQ(sequences.size(), 8u);
 }
 
-// Grey noise in the upper left corner of four tiles, as prepare_random; a constant elsewhere.
+// Gray noise in the upper left corner of four tiles, as prepare_random; a constant elsewhere.
 constexpr ivec2 size(64, 64);
 std::atomic<int64_t> corner_rays = 0;
 ScatterFunction prepare_noisy_corner(const View&, const Snapshot&, const Settings&, History*) {

@@ -91,7 +91,7 @@ void keeps_its_promise(const std::string& name, int truth_samples, PixelFilter f
 }
 }
 
-// At the centres of pixels: elsewhere in them bright edges and lamps make short references noisier than the targets.
+// At the centers of pixels: elsewhere in them bright edges and lamps make short references noisier than the targets.
 TEST(Goal, MarchKeepsItsPromiseAtTheCentersOfPixels) {
     keeps_its_promise("window", 4, PixelFilter::center);
     keeps_its_promise("spotlight", 2, PixelFilter::center);

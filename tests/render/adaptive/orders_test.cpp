@@ -121,7 +121,7 @@ TEST(Orders, AShareOfAllLightIsFound) {
     EXPECT_LE(error.pixels.bound, 0.6);
 }
 
-TEST(Orders, ErrorsThatCancelBetweenNeighboursAreFound) {
+TEST(Orders, ErrorsThatCancelBetweenNeighborsAreFound) {
     // Half of the light, whose rms over its mean is at least 1.
     const OrdersError error = error_of(off_in_stripes(), 1);
     EXPECT_NEAR(error.mean, 0, 0.05);

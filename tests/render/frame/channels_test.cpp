@@ -1,4 +1,4 @@
-// Fog that dims red, green and blue differently, against closed forms and against grey fog of each channel's
+// Fog that dims red, green and blue differently, against closed forms and against gray fog of each channel's
 // extinction.
 #include "modes/mode.h"
 #include "modes/settings.h"
@@ -84,9 +84,9 @@ TEST(Channels, EachHasItsTransmittanceWhoseMeanIsThatOfAll) {
                         0.005f + slices + (noisy ? 4.5f * std::sqrt((1 - through[c]) * through[c] / 1024) : 0))
                 << mode;
     }
-    Seen grey;
-    see(scene_text("0.5"), "march", grey);
-    EXPECT_TRUE(grey.layers.channel_transmittance.empty());
+    Seen gray;
+    see(scene_text("0.5"), "march", gray);
+    EXPECT_TRUE(gray.layers.channel_transmittance.empty());
 }
 
 // A sample comes through or does not.
@@ -105,20 +105,20 @@ TEST(Channels, AlphaIsOneMinusTheMean) {
     EXPECT_NEAR(seen.layers.alpha.at(4, 4), 1 - mean_component(glm::exp(-2.0f * extinction)), 0.005f);
 }
 
-// Each channel is what grey fog would show.
-TEST(Channels, EachIsThatOfGreyFog) {
+// Each channel is what gray fog would show.
+TEST(Channels, EachIsThatOfGrayFog) {
     for (const Mode& mode : modes()) {
         if (mode.surfaces == Surfaces::post) continue;
         Seen all;
         see(scene_text(text(extinction)), mode.name, all);
         for (int c = 0; c < 3; ++c) {
-            Seen grey;
-            see(scene_text(std::to_string(extinction[c])), mode.name, grey);
-            EXPECT_FALSE(is_chromatic(grey.snapshot));
+            Seen gray;
+            see(scene_text(std::to_string(extinction[c])), mode.name, gray);
+            EXPECT_FALSE(is_chromatic(gray.snapshot));
             for (size_t i = 0; i < all.layers.color.pixels.size(); ++i) {
-                EXPECT_NEAR(all.layers.inscatter.pixels[i][c], grey.layers.inscatter.pixels[i][c], 1e-6f) << mode.name;
-                EXPECT_NEAR(all.layers.ambient.pixels[i][c], grey.layers.ambient.pixels[i][c], 1e-6f) << mode.name;
-                EXPECT_NEAR(all.layers.background.pixels[i][c], grey.layers.background.pixels[i][c], 1e-6f)
+                EXPECT_NEAR(all.layers.inscatter.pixels[i][c], gray.layers.inscatter.pixels[i][c], 1e-6f) << mode.name;
+                EXPECT_NEAR(all.layers.ambient.pixels[i][c], gray.layers.ambient.pixels[i][c], 1e-6f) << mode.name;
+                EXPECT_NEAR(all.layers.background.pixels[i][c], gray.layers.background.pixels[i][c], 1e-6f)
                     << mode.name;
             }
         }
@@ -136,7 +136,7 @@ TEST(Channels, ThatFogDoesNotDimStayClear) {
     for (const vec3& pixel : seen.layers.inscatter.pixels) expect_near(pixel * vec3(0, 1, 1), vec3(0), 1e-12f);
 }
 
-TEST(Channels, OfEqualExtinctionAreGrey) {
+TEST(Channels, OfEqualExtinctionAreGray) {
     Seen color, number;
     see(scene_text("[0.4, 0.4, 0.4]"), "march", color);
     see(scene_text("0.4"), "march", number);

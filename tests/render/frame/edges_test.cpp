@@ -1,4 +1,4 @@
-// More rays where neighbouring pixels differ.
+// More rays where neighboring pixels differ.
 #include "modes/limitation.h"
 #include "modes/mode.h"
 #include "render/fixtures.h"
@@ -26,7 +26,7 @@ struct Edge {
 };
 
 View edge_view(int edge_samples, int of_pixel = samples) {
-    View view = plain_view(size, of_pixel, 16); // a pixel is one metre
+    View view = plain_view(size, of_pixel, 16); // a pixel is one meter
     view.edge_samples = edge_samples;
     return view;
 }
@@ -83,7 +83,7 @@ TEST(Edges, NeedPixelsWithAreaAndSamples) {
     EXPECT_EQ(stats.camera_rays, 512u * samples);
     rendered(edge, edge_view(4, 2), stats);
     EXPECT_EQ(stats.camera_rays, 512u * 2);
-    const Edge nothing(0.001f); // between the centres of pixels
+    const Edge nothing(0.001f); // between the centers of pixels
     rendered(nothing, edge_view(4), stats);
     EXPECT_EQ(stats.camera_rays, 512u + 512u * samples);
 }

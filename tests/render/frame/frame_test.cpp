@@ -161,8 +161,8 @@ TEST(Frame, DepthIsPlanar) {
     for (const float z : layers.depth.pixels) EXPECT_NEAR(z, 7, 2e-5f);
 }
 
-TEST(Frame, DepthIsThatOfTheSampleNearestTheCentre) {
-    // An opaque square edge cuts pixel (4,4) right of its centre: some samples miss, the central one hits.
+TEST(Frame, DepthIsThatOfTheSampleNearestTheCenter) {
+    // An opaque square edge cuts pixel (4,4) right of its center: some samples miss, the central one hits.
     Scene scene;
     add_plane(scene, -3, 0.15f, vec3(1));
     const Snapshot snapshot = snapshot_of(scene);

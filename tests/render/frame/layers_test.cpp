@@ -142,7 +142,7 @@ TEST(Noise, ErrorsOfPicturesStayBelowTheBoundWhereFewPixelsHoldThem) {
 }
 
 // Edges that cross an image at any angle, 20 times as bright on one side, seen by one point of each pixel.
-TEST(Noise, NeighboursTellThatOfAnEdge) {
+TEST(Noise, NeighborsTellThatOfAnEdge) {
     double told = 0, is = 0;
     for (uint32_t image = 0; image < 64; ++image) {
         const float angle = 2 * pi * to_unit(hash(image, 1u)), away = 20 * to_unit(hash(image, 2u));
@@ -163,7 +163,7 @@ TEST(Noise, NeighboursTellThatOfAnEdge) {
                 for (uint32_t k = 1; k <= 16; ++k) sum += sample(k), squares += sample(k) * sample(k);
                 variance += (squares - sum * sum / 16) / 15, mean += sum / 16;
             }
-        const Noise noise = noise_by_neighbours(layers);
+        const Noise noise = noise_by_neighbors(layers);
         const double error = 64 * std::sqrt(variance) / mean; // over the mean, of 64² pixels
         EXPECT_GT(noise.bound, error) << image;
         told += noise.error, is += error;
@@ -171,14 +171,14 @@ TEST(Noise, NeighboursTellThatOfAnEdge) {
     EXPECT_NEAR(told / is, 1, 0.15);
 }
 
-TEST(Noise, NeighboursTellMoreThanThatOfPixelsAlike) {
+TEST(Noise, NeighborsTellMoreThanThatOfPixelsAlike) {
     Layers layers = homogeneous_layers({64, 64}, 0, 0, 1, 0);
     for (size_t i = 0; i < 64 * 64; ++i) layers.color.pixels[i] = vec3(to_unit(hash(static_cast<uint32_t>(i), 5u)));
     const double error = std::sqrt(1 / 12.0) / 0.5; // of even numbers between 0 and 1
-    const Noise noise = noise_by_neighbours(layers);
+    const Noise noise = noise_by_neighbors(layers);
     EXPECT_GT(noise.bound, error);
     EXPECT_LT(noise.bound, 1.1 * error);
-    EXPECT_EQ(noise_by_neighbours(homogeneous_layers({4, 4}, 2, 0, 1, 0)).bound, 0);
+    EXPECT_EQ(noise_by_neighbors(homogeneous_layers({4, 4}, 2, 0, 1, 0)).bound, 0);
 }
 
 TEST(Noise, VarianceIsThatOfTheMean) {
@@ -211,7 +211,7 @@ TEST(Noise, OneBatchHasNoVariance) {
     EXPECT_EQ(stats.samples, 4);
 }
 
-TEST(Noise, HalvesAreIndependentAndAverageToTheColour) {
+TEST(Noise, HalvesAreIndependentAndAverageToTheColor) {
     const Scene scene;
     const Snapshot snapshot = snapshot_of(scene);
     FrameOptions options;

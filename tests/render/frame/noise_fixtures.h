@@ -5,7 +5,7 @@
 #include "render/frame/layers.h"
 
 namespace tyndall::test {
-// Every sample is a grey of its own, even in [0,1): mean 1/2, variance 1/12.
+// Every sample is a gray of its own, even in [0,1): mean 1/2, variance 1/12.
 ScatterFunction prepare_random(const View&, const Snapshot&, const Settings&, History*);
 inline constexpr double random_mean = 0.5, random_variance = 1.0 / 12;
 

@@ -19,7 +19,7 @@ namespace tyndall::test {
 namespace {
 // What the renderer does for prepare_emissive and surfaces that only glow, done by the mode: ray by ray.
 Scatter followed(const Snapshot& snapshot, Ray ray, float near) {
-    const float extinction = grey_extinction(snapshot.media[0].optics);
+    const float extinction = gray_extinction(snapshot.media[0].optics);
     Scatter result;
     float through = 1;
     for (int layer = 0; layer < 64; ++layer) {
@@ -73,7 +73,7 @@ Snapshot layered_snapshot(const Scene& scene) {
     return snapshot;
 }
 
-// Colours reach 4 here and go through some ten roundings of 6e-8 each.
+// Colors reach 4 here and go through some ten roundings of 6e-8 each.
 constexpr float rounding = 5e-6f;
 
 void expect_alike(const Image<vec3>& a, const Image<vec3>& b, const char* what) {

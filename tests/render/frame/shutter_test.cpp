@@ -39,7 +39,7 @@ TEST(ShutterMoments, ManySamplesOfAPixelShowEachAsOften) {
     }
 }
 
-TEST(ShutterMoments, FewSamplesAreSpreadOverNeighbours) {
+TEST(ShutterMoments, FewSamplesAreSpreadOverNeighbors) {
     for (const int samples : {1, 2, 4}) {
         const View view = open_view({8, 8}, samples);
         for (int y = 0; y < 8; y += 2)

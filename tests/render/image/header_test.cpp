@@ -1,4 +1,4 @@
-// What the header says about camera, time and colour.
+// What the header says about camera, time and color.
 #include "render/image/exr.h"
 #include "support/scratch.h"
 
@@ -61,7 +61,7 @@ TEST(ExrHeader, TellsTheFieldOfView) {
     EXPECT_FLOAT_EQ(std::stof(attributes_of(provenance).at("screenWindowWidth")), 6);
 }
 
-TEST(ExrHeader, TellsColourAndSoftware) {
+TEST(ExrHeader, TellsColorAndSoftware) {
     const auto attributes = attributes_of({});
     EXPECT_EQ(attributes.at("colorInteropID"), "lin_rec709_scene");
     EXPECT_EQ(attributes.at("chromaticities").substr(0, 15), "0.639999986 0.3");

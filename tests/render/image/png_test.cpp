@@ -71,7 +71,7 @@ TEST(Png, ExposesInStops) {
                   written(Image<vec3>({16, 16}, vec3(8 * value)), {0}).codes);
 }
 
-TEST(Png, ShowsWhatIsNoColourAsBlackOrWhite) {
+TEST(Png, ShowsWhatIsNoColorAsBlackOrWhite) {
     Image<vec3> image({3, 1});
     image.at(0, 0) = vec3(-5, NAN, -infinity);
     image.at(1, 0) = vec3(infinity, 1e30f, 65504);

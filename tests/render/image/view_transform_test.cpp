@@ -8,7 +8,7 @@ namespace {
 vec3 filmic(vec3 linear) { return display_value(linear, {0, ViewTransform::filmic}); }
 }
 
-TEST(ViewTransform, IsThePublishedCurveForGreys) {
+TEST(ViewTransform, IsThePublishedCurveForGrays) {
     // Matrices, polynomial and look as published, evaluated in double precision by another program, over the value of
     // the polynomial at its end.
     const std::pair<float, float> published[] = {{0.01f, 3.30f},  {0.05f, 42.04f}, {0.18f, 99.33f}, {0.5f, 152.51f},
@@ -31,7 +31,7 @@ TEST(ViewTransform, FilmicNeverFallsAndLeavesRoomForHighlights) {
     EXPECT_EQ(display_value(vec3(16), {0, ViewTransform::srgb}), display_value(vec3(1), {0, ViewTransform::srgb}));
 }
 
-TEST(ViewTransform, BrightColoursKeepTheirHueOnTheWayToWhite) {
+TEST(ViewTransform, BrightColorsKeepTheirHueOnTheWayToWhite) {
     for (const vec3 color :
          {vec3(1, 0.62f, 0.28f), vec3(0.2f, 0.4f, 1), vec3(0.1f, 0.9f, 0.2f), vec3(1, 0.05f, 0.02f)}) {
         float spread = infinity;

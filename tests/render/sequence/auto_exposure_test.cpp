@@ -26,7 +26,7 @@ struct Bench {
 };
 }
 
-TEST(AutoExposure, ShowsTheMiddleOfAPictureAsGrey) {
+TEST(AutoExposure, ShowsTheMiddleOfAPictureAsGray) {
     for (const float stops : {0.0f, 2.0f, 5.0f, 9.0f}) {
         const double exposure = exposure_for(spread(1, stops)).value();
         const float shown = display_value(vec3(1), {exposure}).x;

@@ -65,7 +65,7 @@ TEST(NoiseFiles, VariancesAndHalvesKeepAllTheirBits) {
     expect("Variance.", layers.variance.at(2, 1));
     expect("half_a.", layers.half_a.at(2, 1));
     expect("half_b.", layers.half_b.at(2, 1));
-    EXPECT_NE(exr.channel("R")->at(0, 0), 0.1f) << "colours are halves unless asked otherwise";
+    EXPECT_NE(exr.channel("R")->at(0, 0), 0.1f) << "colors are halves unless asked otherwise";
     write_exr(directory.file("a.exr"), layers, {}, {{}, true});
     EXPECT_EQ(read_exr(directory.file("a.exr")).channel("R")->at(0, 0), 0.1f);
 }

@@ -68,7 +68,7 @@ TEST(Gltf, StripsFansAndPoints) {
 
 TEST(Gltf, IntegersInterleavedAndSparse) {
     GltfBuilder gltf;
-    // Interleaved: three signed normalised bytes and one of padding, then two unsigned normalised shorts.
+    // Interleaved: three signed normalized bytes and one of padding, then two unsigned normalized shorts.
     const unsigned char bytes[] = {0,   0,   0, 0, 0, 0,   0,   0, 127, 0, 0,   0,
                                    255, 255, 0, 0, 0, 127, 129, 0, 0,   0, 255, 255};
     gltf.view({reinterpret_cast<const char*>(bytes), sizeof bytes}, R"(,"byteStride":8)");

@@ -108,7 +108,7 @@ TEST(OccludersAlpha, MaskHolesArePassed) {
     expect_transmission(scene, 0.5f, 0.3f, 0);
     expect_transmission(scene, -0.5f, -0.7f, 0);
 
-    // The hole shows the wall behind; the solid half has the texture's colour and is opaque.
+    // The hole shows the wall behind; the solid half has the texture's color and is opaque.
     const auto occluders = Occluders::make(scene, 0, nullptr);
     const Ray rays[] = {{vec3(-0.5f, -0.7f, 0), vec3(0, 0, -1)}, {vec3(0.5f, -0.7f, 0), vec3(0, 0, -1)}};
     Hits hits;

@@ -129,7 +129,7 @@ TEST(LightDepth, OffAverageAndInactive) {
 
     const LightDepth average = make_light_depth(snapshot, light, LightTransmittance::average, 32);
     // Bounds of 17³. The voxels fill 16² columns of them with 4 in all, 2 on average over a column; the box of 10³
-    // fills 10² columns: 1 on the metre below it, 0.5 on average within.
+    // fills 10² columns: 1 on the meter below it, 0.5 on average within.
     const float mean = (256 * 2.0f + 100 * (1 * 1 + 10 * 0.5f) / 17) / 289;
     EXPECT_NEAR(depth_at(average, vec3(5)), mean, 0.01f * mean);
     EXPECT_EQ(depth_at(average, vec3(500)), depth_at(average, vec3(5)));

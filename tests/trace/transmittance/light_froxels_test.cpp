@@ -15,7 +15,7 @@ namespace tyndall {
 namespace {
 using namespace test;
 
-// Noise of 30×20×17 voxels of a metre, seen from the side.
+// Noise of 30×20×17 voxels of a meter, seen from the side.
 struct Stage {
     Snapshot snapshot;
     View view;

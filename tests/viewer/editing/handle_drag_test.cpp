@@ -70,7 +70,7 @@ TEST(HandleDrag, ABeamsRingLiesOnItsCone) {
     const Camera camera = viewpoint(state).camera;
     const std::vector<vec2> ring = beam_ring(camera, picture, *state.scene, 3, 0, 0.5f);
     ASSERT_EQ(ring.size(), 48u);
-    // Straight down with a half angle of 45 degrees: half a metre below, half a metre around.
+    // Straight down with a half angle of 45 degrees: half a meter below, half a meter around.
     float low = 1e9f, high = -1e9f;
     for (const vec2 pixel : ring) {
         const Ray ray = camera_ray(camera, picture, pixel);

@@ -124,7 +124,7 @@ TEST(JsonText, AnyChangeToAnyDocumentIsThatChange) {
     }
 }
 
-TEST(JsonText, PutsAMemberInAsItsNeighboursAre) {
+TEST(JsonText, PutsAMemberInAsItsNeighborsAre) {
     EXPECT_EQ(with_json("{\n  \"a\": 1\n}\n", "/b", "2"), "{\n  \"a\": 1,\n  \"b\": 2\n}\n");
     EXPECT_EQ(with_json("{\r\n\t\"a\" : 1\r\n}", "/b", "2"), "{\r\n\t\"a\" : 1,\r\n\t\"b\" : 2\r\n}");
     EXPECT_EQ(with_json("{ \"a\": 1, \"b\": 2 }", "/c", "3"), "{ \"a\": 1, \"b\": 2, \"c\": 3 }");

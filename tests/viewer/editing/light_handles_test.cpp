@@ -7,7 +7,7 @@
 
 namespace tyndall::test {
 namespace {
-// At (0,0,10) looking along -Z, 90 degrees high: at depth d a picture of 200 rows is 2d metres high.
+// At (0,0,10) looking along -Z, 90 degrees high: at depth d a picture of 200 rows is 2d meters high.
 const Camera eye = look_at(vec3(0, 0, 10), vec3(0), vec3(0, 1, 0), pi / 2);
 constexpr ivec2 size{400, 200};
 
@@ -37,7 +37,7 @@ TEST(LightHandles, IconsStandWhereTheLightsAre) {
     const std::vector<LightIcon> icons = light_icons(eye, size, scene, 0, vec3(0, 5, 5));
     ASSERT_EQ(icons.size(), 2u) << "the second is behind the eye";
     EXPECT_NEAR(icons[0].pixel.x, 220, 1e-3f);
-    EXPECT_NEAR(icons[0].pixel.y, 90, 1e-3f); // 10 pixels per metre
+    EXPECT_NEAR(icons[0].pixel.y, 90, 1e-3f); // 10 pixels per meter
     EXPECT_EQ(icons[0].depth, 10);
     EXPECT_EQ(icons[1].place, vec3(0, 5, 5)) << "a sun without a place";
     EXPECT_NEAR(pixel_size(eye, size, vec3(2, 1, 0)), 0.1f, 1e-6f);
@@ -67,7 +67,7 @@ TEST(LightHandles, AcrossTheViewALightStaysUnderThePointer) {
             EXPECT_NEAR(glm::dot(moved - place, camera.forward), 0, 1e-5f) << "same depth";
         }
     }
-    // Taken beside its middle it stays beside the pointer: 10 pixels are a metre.
+    // Taken beside its middle it stays beside the pointer: 10 pixels are a meter.
     expect_near(drag_across_view(eye, size, vec3(0), {204, 100}, {214, 90}), vec3(1, 1, 0), 1e-5f);
 }
 

@@ -177,7 +177,7 @@ TEST(SceneSession, ABareVolumeIsSavedAsAScene) {
     ASSERT_EQ(bare.warnings.size(), 1u);
     EXPECT_NE(bare.warnings[0].find("a volume by itself"), std::string::npos);
     ASSERT_EQ(session.scene.media.size(), 1u);
-    // Voxels of 0.25 m, centres 0 to 1.75: a box of 2 m, diagonal 2 √3; its densest is 0.5.
+    // Voxels of 0.25 m, centers 0 to 1.75: a box of 2 m, diagonal 2 √3; its densest is 0.5.
     EXPECT_NEAR(session.scene.media[0].extinction.at(0), 4 / (2 * std::sqrt(3.0f) * 0.5f), 1e-4f);
     const Camera camera = look_at(session.scene.cameras[0].position.at(0), session.scene.cameras[0].target.at(0),
                                   vec3(0, 1, 0), session.scene.cameras[0].vertical_fov.at(0));

@@ -61,7 +61,7 @@ TEST(SceneText, ChangesAndInsertsKeys) {
     EXPECT_EQ(state_of(bench.read()), state_of(bench.scene));
 }
 
-TEST(SceneText, InsertsMissingMembersAsTheirNeighboursAre) {
+TEST(SceneText, InsertsMissingMembersAsTheirNeighborsAre) {
     Bench bench;
     bench.set("lights/stage/volume_scale", "2");
     bench.set("media/dust/wind", "0 0 1");
@@ -117,7 +117,7 @@ TEST(SceneText, TheLimitsOfTheTableAreThoseOfTheSchema) {
         try {
             singles = apply(scene, edit);
         } catch (const Error&) {
-            return false; // neighbours forbid it
+            return false; // neighbors forbid it
         }
         EXPECT_NO_THROW(edited_text(start.text, scene, singles))
             << part_path(scene, edit.part, index) << property.name << value;

@@ -176,11 +176,11 @@ TEST(ReferencePicture, NoiseIsTheStandardErrorOfTheMeanOfBothHalves) {
         for (vec3& color : half.color.pixels) color = vec3(0);
         for (vec3& fog : half.inscatter.pixels) fog *= 2;
     }
-    // Of colour the halves are 8 apart: 64 = v 4/3, √(48/4) of 2, which is more.
+    // Of color the halves are 8 apart: 64 = v 4/3, √(48/4) of 2, which is more.
     EXPECT_NEAR(error_figures(picture, reference).noise, std::sqrt(12.0) / 2, 1e-6);
 }
 
-TEST(ReferencePicture, ColoursRiseWithTheErrorInPowersOfTen) {
+TEST(ReferencePicture, ColorsRiseWithTheErrorInPowersOfTen) {
     const Layers truth = even({1, 1}, 1, 1);
     const auto color = [&](float value) { return error_codes(even({1, 1}, value, 1), truth).at(0, 0); };
     EXPECT_EQ(color(1), glm::u8vec4(0, 0, 0, 255));

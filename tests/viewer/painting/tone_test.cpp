@@ -31,7 +31,7 @@ TEST(Tone, ThePictureLooksAsItsPngDoes) {
     }
 }
 
-TEST(Tone, StopsAreFalseColoursOfLuminance) {
+TEST(Tone, StopsAreFalseColorsOfLuminance) {
     Layers layers = ramp();
     for (int x = 0; x < 40; ++x)
         layers.color.at(x, 0) = vec3(0.18f * std::exp2(0.5f * static_cast<float>(x - 20) + 0.25f));

@@ -20,7 +20,7 @@ VolumePicture asked(const Request& request) {
     return *volume_picture(request, snapshot, known);
 }
 
-// 16 x 8 x 8 voxels of 0.5 m, centres of the first at 0.25: the density rises along x only, 0 to 15 sixteenths.
+// 16 x 8 x 8 voxels of 0.5 m, centers of the first at 0.25: the density rises along x only, 0 to 15 sixteenths.
 std::shared_ptr<Scene> scene_with_ramp(const TempFolder& directory) {
     SparseVolume volume;
     volume.index_to_world = glm::translate(dmat4(1), dvec3(0.25)) * glm::scale(dmat4(1), dvec3(0.5));
@@ -58,13 +58,13 @@ TEST(VolumePicture, ASliceShowsTheDensityWhereItIs) {
     EXPECT_EQ(shown.high, 15.0 / 16);
     ASSERT_GE(shown.codes.size.x, 15);
     const int row = shown.codes.size.y / 2;
-    const auto color_at = [&](double x) { // metres
+    const auto color_at = [&](double x) { // meters
         const double share = (x - shown.box.low.x) / (shown.box.high.x - shown.box.low.x);
         return shown.codes.at(static_cast<int>(share * shown.codes.size.x), row);
     };
     EXPECT_LT(lightness(color_at(1)), lightness(color_at(4)));
     EXPECT_LT(lightness(color_at(4)), lightness(color_at(7)));
-    // A cell is half a metre wide at most, and the density rises by an eighth per metre.
+    // A cell is half a meter wide at most, and the density rises by an eighth per meter.
     const double least = (7 - 0.25 - 0.5) / 8 / shown.high, most = (7 - 0.25 + 0.5) / 8 / shown.high;
     EXPECT_GE(lightness(color_at(7)), lightness({heat_color(least), 255}));
     EXPECT_LE(lightness(color_at(7)), lightness({heat_color(most), 255}));

@@ -91,7 +91,7 @@ TEST(EditActions, RefusedEditsChangeNothing) {
     EXPECT_NE(error_message(ExitCode::refused, [&] { edited("edit lights/5/outer_cone 5"); }).find("inner_cone"),
               std::string::npos);
     error_message(ExitCode::usage, [&] { edited("edit lights/nobody/intensity 5"); });
-    error_message(ExitCode::usage, [&] { edited("edit media/0/colour 5"); });
+    error_message(ExitCode::usage, [&] { edited("edit media/0/color 5"); });
     EXPECT_EQ(state_of(*edited.state.scene), before);
     EXPECT_EQ(edited.state.revision, revision);
     EXPECT_FALSE(has_unsaved_changes(*edited.state.session));

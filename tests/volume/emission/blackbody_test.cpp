@@ -16,8 +16,8 @@ Chromaticity chromaticity(double kelvin) {
     return {xyz.x / sum, xyz.y / sum};
 }
 
-// The candela was 1/60 of the light of a square centimetre of platinum that freezes, at 2042 K (CGPM 1948).
-TEST(Blackbody, FreezingPlatinumHasSixtyCandelaPerSquareCentimetre) {
+// The candela was 1/60 of the light of a square centimeter of platinum that freezes, at 2042 K (CGPM 1948).
+TEST(Blackbody, FreezingPlatinumHasSixtyCandelaPerSquareCentimeter) {
     EXPECT_NEAR(blackbody_xyz(2042).y, 60e4, 60e4 * 0.005);
 }
 
@@ -92,7 +92,7 @@ TEST(Blackbody, CyclesCutsOffWhatIsBelowZero) {
     }
 }
 
-// Both are the same spectrum: what is between them is its maximum and 683 lm/W per metre; pbrt counts in nanometres.
+// Both are the same spectrum: what is between them is its maximum and 683 lm/W per meter; pbrt counts in nanometers.
 TEST(Blackbody, PbrtIsPlanckOverItsMaximum) {
     for (const double kelvin : {1000.0, 2500.0, 6500.0}) {
         const double peak = planck_radiance(2.897771955e-3 / kelvin, kelvin);

@@ -71,7 +71,7 @@ TEST(Noise, HasTheSpreadOfItsFormulaInEveryDirection) {
     }
 }
 
-TEST(Noise, NeighbouringGradientsHaveNothingInCommon) {
+TEST(Noise, NeighboringGradientsHaveNothingInCommon) {
     // Values at the middle of cells a few cells apart, all 124 ways: 4 standard errors of 40 000 pairs.
     const FractalNoise noise{.octaves = 1, .seed = 9};
     const NoiseSum sum = noise_sum(noise, {{}}, dvec3(0));
@@ -150,7 +150,7 @@ TEST(Noise, GivesTheSameBitsOnEveryInstructionSet) {
     }
 }
 
-TEST(Noise, APointDoesNotDependOnItsNeighbours) {
+TEST(Noise, APointDoesNotDependOnItsNeighbors) {
     const Points points = random_points(100, around_home);
     const std::vector<float> together = noise_at({}, 0.1f, points);
     for (size_t i = 0; i < points.size(); ++i) {

@@ -157,7 +157,7 @@ TEST(Mie, IsAPhaseFunctionOverItsWholeRange) {
 }
 
 // Cloud droplets in visible light have a mean cosine of 0.85 to 0.88 (Hu & Stamnes 1993, effective radii of 5 to 30
-// micrometres); those far smaller than the wavelength scatter as Rayleigh says.
+// micrometers); those far smaller than the wavelength scatter as Rayleigh says.
 TEST(Mie, HasTheMeanCosineOfCloudsAndOfAir) {
     for (const double d : {10.0, 15.0, 20.0, 30.0, 50.0}) {
         EXPECT_GT(mean_cosine(mie_phase(d)), 0.82) << d;

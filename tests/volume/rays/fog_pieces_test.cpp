@@ -66,7 +66,7 @@ TEST(FogPieces, GridDensityIsTrilinearEverywhere) {
         EXPECT_NEAR(pieces.depth, optical_depth(fog, ray), rounding(fog, ray));
         for (size_t p = 0; p < pieces.pieces.size(); ++p) {
             const auto [low, high, depth, rate] = pieces.pieces[p];
-            EXPECT_NEAR(rate, 1, 1e-6); // voxels of a metre
+            EXPECT_NEAR(rate, 1, 1e-6); // voxels of a meter
             for (const double share : {0.1, 0.5, 0.9}) {
                 const double t = low + share * (high - low);
                 const dvec3 point = dvec3(ray.origin) + t * dvec3(ray.direction);
@@ -103,7 +103,7 @@ TEST(FogPieces, MediaLieOverEachOther) {
                 const vec3 point = to_middle.at(to_middle.t_max);
                 std::fill(x, x + 16, point.x), std::fill(y, y + 16, point.y), std::fill(z, z + 16, point.z);
                 densities(media[m], x, y, z, density);
-                const double expected = grey_extinction(media[m].optics) > 0 ? density[0] : 0;
+                const double expected = gray_extinction(media[m].optics) > 0 ? density[0] : 0;
                 if (piece.high - piece.low > 1e-4) { // else the float point may lie beside the piece
                     EXPECT_NEAR(pieces.density(p, m, to_middle.t_max), expected, 3e-5) << i << ' ' << m;
                 }

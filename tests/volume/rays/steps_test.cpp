@@ -22,7 +22,7 @@ double marched_depth(const Medium& medium, const Ray& ray, const StepRule& rule)
     double sum = 0;
     for (const Step& step : steps_of(ray, medium, rule))
         sum += double(density_at(medium, ray.at(0.5f * (step.low + step.high)))) * (step.high - step.low);
-    return sum * grey_extinction(medium.optics);
+    return sum * gray_extinction(medium.optics);
 }
 
 bool ascending(const Ray& ray, const std::vector<Step>& steps) {

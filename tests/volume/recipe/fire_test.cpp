@@ -57,7 +57,7 @@ TEST(Fire, StillFlamesHaveTheHeatOfTheFormula) {
     EXPECT_LT(flames, 15000);
     EXPECT_NEAR(kelvin.back(), 1900, 1e-3) << "the core at the base";
 
-    // The tip of the axis and the rim of the base, a millimetre to both sides.
+    // The tip of the axis and the rim of the base, a millimeter to both sides.
     Points ends;
     for (const float d : {-1e-3f, 1e-3f})
         ends.add(fire.base + vec3(0, fire.height + d, 0)), ends.add(fire.base + vec3(fire.radius + d, 0, 0));
@@ -228,7 +228,7 @@ TEST(FireVelocity, FollowsWhatTheNoiseShows) {
         plain += glm::distance(speeds[i], recipe.wind) / static_cast<double>(points.size());
     }
     EXPECT_GT(good, 1900) << "but where space is folded";
-    EXPECT_GT(plain, 0.2) << "metres per second by the swirl";
+    EXPECT_GT(plain, 0.2) << "meters per second by the swirl";
 }
 
 TEST(FireVelocity, FlamesAreBentFromTheirFeetUp) {

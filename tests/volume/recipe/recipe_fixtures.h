@@ -41,7 +41,7 @@ inline FogRecipe random_recipe(std::mt19937& random, float across) {
         return std::uniform_real_distribution<float>(low, high)(random);
     };
     FogRecipe recipe;
-    // Binary fractions: voxel centres are the same floats in the world and about the middle of the bounds.
+    // Binary fractions: voxel centers are the same floats in the world and about the middle of the bounds.
     const auto exact = [](vec3 v) { return glm::round(v * 16.0f) / 16.0f; };
     recipe.bounds.low = exact(vec3(uniform(-50, 50), uniform(-5, 5), uniform(-50, 50)));
     recipe.bounds.high = recipe.bounds.low + exact(across * vec3(uniform(0.8f, 1), uniform(0.8f, 1), uniform(0.8f, 1)));

@@ -100,7 +100,7 @@ TEST(RecipeGrow, ComputesLittleForNothing) {
     EXPECT_LT(report.wasted, report.finished / 20);
 }
 
-// Voxel centres that are no binary fractions reach recipe_density() rounded to floats: the last digits may differ.
+// Voxel centers that are no binary fractions reach recipe_density() rounded to floats: the last digits may differ.
 TEST(RecipeGrow, BusyFogEqualsItsDefinition) {
     for (const double seconds : {0.0, 1.3, 2.0}) {
         const Comparison found = compare_with_brute_force(busy_fog(), seconds, nullptr, 1e-3f);
@@ -137,7 +137,7 @@ TEST(RecipeGrow, LeavesAreSortedWholeAndUseful) {
     EXPECT_TRUE(volume.tiles.empty());
 }
 
-TEST(RecipeGrow, VoxelCentresLieHalfAVoxelInside) {
+TEST(RecipeGrow, VoxelCentersLieHalfAVoxelInside) {
     FogRecipe recipe = full_fog();
     recipe.bounds = {vec3(-1, 2, 5), vec3(1, 3, 5.5f)};
     recipe.voxel_size = 0.1;

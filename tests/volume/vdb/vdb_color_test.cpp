@@ -51,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(All, ReadVectors,
                                             ::testing::Values(pack_none, pack_mask, pack_zip | pack_mask,
                                                               pack_blosc | pack_mask)));
 
-// A background of white, as Houdini writes it, is a colour of no voxel; values a share cannot have are mended.
+// A background of white, as Houdini writes it, is a color of no voxel; values a share cannot have are mended.
 TEST(VdbColor, BackgroundIsNoColorAndValuesAreMended) {
     AuthoredGrid grid = grid_of("Cd", "vec3s");
     grid.background = 1;

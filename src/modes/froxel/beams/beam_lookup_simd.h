@@ -76,7 +76,7 @@ HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, siz
     const Medium& of = walk.froxels.scene->snapshot.media[medium];
     const bool grid = of.density.kind == DensityKind::bricks;
     if (grid && !any(walk.close > 0.0f)) return mean_extinction(walk, here, medium, slice);
-    const Floats exact = density16(of, point) * grey_extinction(of.optics);
+    const Floats exact = density16(of, point) * gray_extinction(of.optics);
     if (!grid || !any(walk.close < 1.0f)) return exact;
     const Floats mean = mean_extinction(walk, here, medium, slice);
     return nearer(walk, mean, exact);
@@ -175,7 +175,7 @@ Floats own_depth_to(const BeamWalk& walk, int face, RayDepths& known) {
         const Vec3s point = fma(walk.rays.direction, (low + high) * 0.5f, walk.rays.origin);
         Floats extinction = 0.0f;
         for (const Medium& medium : walk.froxels.scene->snapshot.media)
-            extinction = extinction + density16(medium, point) * grey_extinction(medium.optics);
+            extinction = extinction + density16(medium, point) * gray_extinction(medium.optics);
         known.depths.resize(16 * (k + 1));
         store(fma(extinction, high - low, load(&known.depths[16 * (k - 1)])), &known.depths[16 * k]);
     }

@@ -104,7 +104,7 @@ FroxelBeams::LampFog fog_at_lamp(const FroxelScene& scene, const FroxelGrid& gri
     const Light& light = scene.snapshot.lights[index];
     float extinction = 0;
     for (const Medium& medium : scene.snapshot.media)
-        if (is_grid(medium)) extinction += density_at(medium, light.position) * grey_extinction(medium.optics);
+        if (is_grid(medium)) extinction += density_at(medium, light.position) * gray_extinction(medium.optics);
     const float z = std::max(glm::dot(light.position - grid.camera.position, grid.camera.forward), grid.faces.front());
     const float width = froxel_width(grid, z);
     return {extinction * dimming(scene.depths[index]), froxels * width};

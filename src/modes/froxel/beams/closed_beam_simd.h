@@ -47,7 +47,7 @@ Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch,
                               style_fade(scene.style, walk.froxels.grid.camera, point);
         Vec3s towards = scattering(scene.snapshot.media, point, -u / max(distance, 1e-20f), [&](size_t m) HWY_ATTR {
             const Medium& medium = scene.snapshot.media[m];
-            return density16(medium, point) * grey_extinction(medium.optics);
+            return density16(medium, point) * gray_extinction(medium.optics);
         });
         if (walk.light.filter) towards = walk.filtered(towards, point, distance);
         sum = fma(towards, zero_unless(here, amount), sum);

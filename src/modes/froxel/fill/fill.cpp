@@ -126,7 +126,7 @@ bool set_lanes(const Fill& fill, ivec2 corner, int stride, Lanes& lanes) {
 
 // With amortized filling, a packet consists of every second tile in both directions, so that all of it is either relit
 // or stale.
-int stride_of(const FroxelScene& scene) { return scene.settings.amortise ? 2 : 1; }
+int stride_of(const FroxelScene& scene) { return scene.settings.amortize ? 2 : 1; }
 
 // Fills a block of tiles through all slices.
 void fill_block(const Fill& fill, ivec2 corner, int stride, size_t block) {

@@ -45,14 +45,14 @@ Moments light_on(const LightAlong& along, const NearLight& near, double low, dou
 
 // Adds a lit segment, in lengths of the ray, to the slices it crosses.
 void add_stretch(const FroxelGrid& grid, const LightAlong& along, const NearLight& near, Interval<double> stretch,
-                 double per_metre, std::vector<Moments>& slices) {
-    const auto end = [&](int k) { return grid.faces[static_cast<size_t>(k) + 1] / per_metre; };
-    int k = slice_of(grid, static_cast<float>(stretch.low * per_metre));
+                 double per_meter, std::vector<Moments>& slices) {
+    const auto end = [&](int k) { return grid.faces[static_cast<size_t>(k) + 1] / per_meter; };
+    int k = slice_of(grid, static_cast<float>(stretch.low * per_meter));
     while (k > 0 && end(k - 1) > stretch.low) --k;
     for (double low = stretch.low; k < grid.slices() && low < stretch.high; ++k) {
         const double high = std::min(stretch.high, end(k));
         if (!(high > low)) continue;
-        if (low * per_metre >= grid.faces[0]) {
+        if (low * per_meter >= grid.faces[0]) {
             const Moments part = light_on(along, near, low, high);
             slices[static_cast<size_t>(k)].amount += part.amount, slices[static_cast<size_t>(k)].first += part.first;
         }
@@ -63,7 +63,7 @@ void add_stretch(const FroxelGrid& grid, const LightAlong& along, const NearLigh
 // Lines through up to 16 tiles, up to the surface.
 struct Lines {
     std::array<Ray, 16> rays;
-    std::array<double, 16> per_metre; // planar depth per meter of the line
+    std::array<double, 16> per_meter; // planar depth per meter of the line
     std::array<LightPoint, 16> points;
     uint32_t active = 0; // bits
     int bin = 0;         // block of 8×8 tiles that contains them all
@@ -76,10 +76,10 @@ Lines find_lines(const FroxelGrid& grid, const FroxelTiles& tiles, const Light& 
         const ivec2 at = lanes[lane];
         if (at.x >= grid.size.x || at.y >= grid.size.y) continue;
         Ray& line = lines.rays[lane] = line_ray(grid, grid.pixel_of(vec2(at) + tiles.offsets[ray]));
-        lines.per_metre[lane] = glm::dot(line.direction, grid.camera.forward);
+        lines.per_meter[lane] = glm::dot(line.direction, grid.camera.forward);
         const float surface = tiles.depth[grid.tile_index(at) * tiles.rays() + ray];
-        line.t_max = static_cast<float>(std::min(grid.faces.back(), surface) / lines.per_metre[lane]);
-        if (!(line.t_max * lines.per_metre[lane] > grid.faces.front())) continue;
+        line.t_max = static_cast<float>(std::min(grid.faces.back(), surface) / lines.per_meter[lane]);
+        if (!(line.t_max * lines.per_meter[lane] > grid.faces.front())) continue;
         // Different points for each block of 4×4 tiles: repeated ones would show as a pattern.
         const auto block = static_cast<uint32_t>((at.y >> 2) * grid.size.x + (at.x >> 2));
         lines.points[lane] =
@@ -143,18 +143,18 @@ void add_sun(const FroxelScene& scene, const FroxelGrid& grid, size_t light, con
     find_stretches(scene, light, lines, lit);
     for (size_t lane = 0; lane < 16; ++lane)
         for (const Interval<double>& stretch : lit[lane])
-            add_depths(grid, static_cast<float>(stretch.low * lines.per_metre[lane]),
-                       static_cast<float>(stretch.high * lines.per_metre[lane]), lane, slices);
+            add_depths(grid, static_cast<float>(stretch.low * lines.per_meter[lane]),
+                       static_cast<float>(stretch.high * lines.per_meter[lane]), lane, slices);
 }
 
 // Adds the light on one line of a tile to its slices: sums of amounts, and of points times amounts.
-void add_line(const FroxelGrid& grid, const Ray& line, double per_metre, const LightAlong& along, const NearLight& near,
+void add_line(const FroxelGrid& grid, const Ray& line, double per_meter, const LightAlong& along, const NearLight& near,
               size_t lane, LightInjection::Arrivals* slices) {
     static thread_local std::vector<Moments> moments;
-    const double start = grid.faces.front() / per_metre;
+    const double start = grid.faces.front() / per_meter;
     moments.assign(static_cast<size_t>(grid.slices()), {});
     for (const Interval<double>& s : along.lit)
-        add_stretch(grid, along, near, {std::max(s.low, start), s.high}, per_metre, moments);
+        add_stretch(grid, along, near, {std::max(s.low, start), s.high}, per_meter, moments);
     for (size_t k = 0; k < moments.size(); ++k) {
         if (!(moments[k].amount > 0)) continue;
         const auto amount = static_cast<float>(moments[k].amount);
@@ -195,16 +195,16 @@ void add_lines(const FroxelScene& scene, const FroxelGrid& grid, size_t light, L
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!(lines.active >> lane & 1)) continue;
         keep_common(lit[lane], along[lane].lit);
-        add_line(grid, lines.rays[lane], lines.per_metre[lane], along[lane], scene.near(light), lane, slices);
+        add_line(grid, lines.rays[lane], lines.per_meter[lane], along[lane], scene.near(light), lane, slices);
     }
 }
 
 // Adds the length of one line of a tile in each slice.
 void add_lengths(const FroxelGrid& grid, const Lines& lines, size_t lane, std::vector<double>& lengths) {
     const Ray& line = lines.rays[lane];
-    const double per_metre = lines.per_metre[lane];
+    const double per_meter = lines.per_meter[lane];
     for (size_t k = 0; k < lengths.size(); ++k) {
-        const double length = std::min<double>(grid.faces[k + 1] / per_metre, line.t_max) - grid.faces[k] / per_metre;
+        const double length = std::min<double>(grid.faces[k + 1] / per_meter, line.t_max) - grid.faces[k] / per_meter;
         if (!(length > 0)) return;
         lengths[k] += length;
     }
@@ -285,8 +285,8 @@ void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const Froxe
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!(lines.active >> lane & 1)) continue;
         const auto add = [&](Interval<double> stretch, LightInjection::Depths* slices) {
-            add_depths(grid, static_cast<float>(stretch.low * lines.per_metre[lane]),
-                       static_cast<float>(stretch.high * lines.per_metre[lane]), lane, slices);
+            add_depths(grid, static_cast<float>(stretch.low * lines.per_meter[lane]),
+                       static_cast<float>(stretch.high * lines.per_meter[lane]), lane, slices);
         };
         add(chords[lane], inside);
         for (const Interval<double>& stretch : stretches[lane])

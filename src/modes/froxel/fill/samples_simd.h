@@ -195,13 +195,13 @@ Floats mean_extinction(const Medium& medium, const FroxelLanes& lanes, float thi
     }
     const float voxels = thickness * glm::length(vec3(medium.density.bricks->world_to_index[0]));
     const int count = static_cast<int>(std::clamp(std::ceil(0.5f * voxels), 1.0f, 4.0f));
-    if (count == 1) return zero_unless(lanes.active, density16(medium, lanes.point) * grey_extinction(medium.optics));
+    if (count == 1) return zero_unless(lanes.active, density16(medium, lanes.point) * gray_extinction(medium.optics));
     Floats sum = 0.0f;
     for (int i = 0; i < count; ++i) {
         const Floats at = lanes.length * ((static_cast<float>(i) + 0.5f) / static_cast<float>(count));
         sum = sum + density16(medium, fma(lanes.toward, at, lanes.start));
     }
-    return zero_unless(lanes.active, sum * (grey_extinction(medium.optics) / static_cast<float>(count)));
+    return zero_unless(lanes.active, sum * (gray_extinction(medium.optics) / static_cast<float>(count)));
 }
 }
 }

@@ -30,7 +30,7 @@ struct FroxelTaps {
 
 // The slices that contain planar depths, as slice_of().
 HWY_INLINE Ints slices_of(const FroxelGrid& grid, const Floats& z) {
-    const Floats place = (z - grid.faces.front()) * grid.stretches_per_metre;
+    const Floats place = (z - grid.faces.front()) * grid.stretches_per_meter;
     const float last = static_cast<float>(grid.first_slice.size()) - 1,
                 last_slice = static_cast<float>(grid.slices() - 1);
     Ints k = gather(grid.first_slice.data(), truncate(max(min(place, last), 0.0f)));

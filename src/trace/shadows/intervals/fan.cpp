@@ -41,9 +41,9 @@ double min_of(const std::vector<dvec3>& hull, dvec3 normal) {
 ShadowSlice make_slice(const Ray& ray, const LightPoint& light) {
     ShadowSlice slice;
     slice.origin = dvec3(ray.origin), slice.far = light.far;
-    slice.per_metre = glm::length(dvec3(ray.direction));
-    slice.x = dvec3(ray.direction) / slice.per_metre;
-    slice.x_max = std::min<double>(ray.t_max, farthest) * slice.per_metre;
+    slice.per_meter = glm::length(dvec3(ray.direction));
+    slice.x = dvec3(ray.direction) / slice.per_meter;
+    slice.x_max = std::min<double>(ray.t_max, farthest) * slice.per_meter;
     const dvec3 towards = light.far ? light.at : light.at - slice.origin;
     dvec3 across = towards - glm::dot(towards, slice.x) * slice.x;
     across -= glm::dot(across, slice.x) * slice.x; // removes rounding error along the ray, if `across` is small

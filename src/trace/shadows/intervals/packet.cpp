@@ -71,8 +71,8 @@ HWY_INLINE void cast(const ShadowPacket& p, size_t i, Point a, Point b, hn::Mask
     const Doubles s = on_ray(a), t = on_ray(b);
     const Doubles from = hn::Max(hn::Min(s, t), zero), to = hn::Min(hn::Max(s, t), load(p.end + i));
     there = hn::And(there, hn::Lt(from, to));
-    const Doubles metres = load(p.metres + i);
-    hn::Store(hn::Mul(from, metres), d, shadows.low + i), hn::Store(hn::Mul(to, metres), d, shadows.high + i);
+    const Doubles meters = load(p.meters + i);
+    hn::Store(hn::Mul(from, meters), d, shadows.low + i), hn::Store(hn::Mul(to, meters), d, shadows.high + i);
     uint8_t bits[8] = {};
     hn::StoreMaskBits(d, there, bits);
     shadows.rays |= static_cast<uint32_t>(bits[0]) << i;

@@ -9,7 +9,7 @@ struct ShadowSlice {
     dvec3 origin, x, y, normal;
     double light_x, light_y; // position of the light; for a sun, its direction
     bool far;
-    double x_max, per_metre; // end of the ray; x per unit of t, as directions are unit only to float rounding
+    double x_max, per_meter; // end of the ray; x per unit of t, as directions are unit only to float rounding
 
     struct Point {
         double x, y;
@@ -43,7 +43,7 @@ struct ShadowPacket {
     alignas(64) double near[16] = {};   // 1 for a local light, 0 for a sun
     alignas(64) double top[16] = {};    // y at which occluders end
     alignas(64) double end[16] = {};    // x_max
-    alignas(64) double metres[16] = {}; // t per unit of x
+    alignas(64) double meters[16] = {}; // t per unit of x
     uint32_t active = 0;                // bits
 };
 

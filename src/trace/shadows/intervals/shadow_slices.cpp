@@ -22,7 +22,7 @@ void append_shadow(const Slice& slice, Point a, Point b, std::vector<Interval<do
     };
     const double s = on_ray(a), t = on_ray(b);
     const Interval<double> shadow{std::max(std::min(s, t), 0.0), std::min(std::max(s, t), slice.x_max)};
-    if (!shadow.empty()) shadows.push_back({shadow.low / slice.per_metre, shadow.high / slice.per_metre});
+    if (!shadow.empty()) shadows.push_back({shadow.low / slice.per_meter, shadow.high / slice.per_meter});
 }
 
 // The interval of the line start + t·along inside a circle; empty if it misses.
@@ -88,7 +88,7 @@ void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& ligh
     lit.clear();
     if (!(ray.t_max > 0) || !is_finite(ray.origin) || !is_finite(ray.direction)) return;
     const Slice slice = make_slice(ray, light);
-    const double t_max = slice.x_max / slice.per_metre;
+    const double t_max = slice.x_max / slice.per_meter;
     if (slices.nodes.empty()) return lit.push_back({0, t_max});
     const Ball ball = ball_in(slice, light);
     shadows.clear(), segments.clear();
@@ -100,7 +100,7 @@ void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& ligh
             append_shadow(slice, a, b, shadows);
     append_gaps(shadows, t_max, lit);
     if (ball.squared_radius > 0) {
-        const Interval<double> inside = in_ball({0, 0}, {slice.per_metre, 0}, ball.center, ball.squared_radius);
+        const Interval<double> inside = in_ball({0, 0}, {slice.per_meter, 0}, ball.center, ball.squared_radius);
         add_stretch({std::max(inside.low, 0.0), std::min(inside.high, t_max)}, lit);
     }
 }
@@ -113,7 +113,7 @@ void set_lane(ShadowPacket& packet, size_t i, const Slice& slice) {
     }
     packet.light_x[i] = slice.light_x, packet.light_y[i] = slice.light_y, packet.near[i] = slice.far ? 0 : 1;
     packet.top[i] = slice.far ? std::numeric_limits<double>::infinity() : reach * slice.light_y;
-    packet.end[i] = slice.x_max, packet.metres[i] = 1 / slice.per_metre;
+    packet.end[i] = slice.x_max, packet.meters[i] = 1 / slice.per_meter;
     packet.active |= 1u << i;
 }
 
@@ -154,10 +154,10 @@ void find_lit(const ShadowSlices& slices, std::span<const Ray> rays, std::span<c
         segments.clear();
         if (!around.nodes.empty()) append_segments(around, planes[i], segments);
         for (const auto& [a, b] : segments) append_outside(planes[i], ball, a, b, shadows[i]);
-        const double t_max = planes[i].x_max / planes[i].per_metre;
+        const double t_max = planes[i].x_max / planes[i].per_meter;
         append_gaps(shadows[i], t_max, lit[i]);
         if (!(ball.squared_radius > 0)) continue;
-        const Interval<double> inside = in_ball({0, 0}, {planes[i].per_metre, 0}, ball.center, ball.squared_radius);
+        const Interval<double> inside = in_ball({0, 0}, {planes[i].per_meter, 0}, ball.center, ball.squared_radius);
         add_stretch({std::max(inside.low, 0.0), std::min(inside.high, t_max)}, lit[i]);
     }
 }

@@ -77,7 +77,7 @@ TEST(ShadowSlices, LampShadowOfARoof) {
 }
 
 TEST(ShadowSlices, LightGetsThroughHolesExactly) {
-    // Two roofs with a slit of a tenth of a millimetre: x from 0.25 on.
+    // Two roofs with a slit of a tenth of a millimeter: x from 0.25 on.
     const float slit = 1e-4f;
     const Stage stage =
         stage_of({quad({-1, 1, -1}, {1.25f, 0, 0}, {0, 0, 2}), quad({0.25f + slit, 1, -1}, {1, 0, 0}, {0, 0, 2})});
@@ -95,7 +95,7 @@ TEST(ShadowSlices, DuplicatedFlippedAndCoplanarFacesChangeNothing) {
 }
 
 TEST(ShadowSlices, LightOnTheLineOfTheRay) {
-    // A wall across the ray at x = 1, five metres along it.
+    // A wall across the ray at x = 1, five meters along it.
     const Stage stage = stage_of({quad({1, -1, -1}, {0, 2, 0}, {0, 0, 2})});
     expect_lit(stage.lit(level, sun_from({1, 0, 0})), {{5, 8}}, 1e-6);  // ahead: the wall shadows what is before it
     expect_lit(stage.lit(level, sun_from({-1, 0, 0})), {{0, 5}}, 1e-6); // behind
@@ -107,12 +107,12 @@ TEST(ShadowSlices, LightOnTheLineOfTheRay) {
 }
 
 TEST(ShadowSlices, LightAlmostOnTheLineOfTheRay) {
-    // A sill of height h across the ray at x = 1, seen under h/2 per metre: it shadows two metres.
+    // A sill of height h across the ray at x = 1, seen under h/2 per meter: it shadows two meters.
     for (const float h : {1e-2f, 1e-4f, 1e-6f, 1e-7f}) {
         const Stage stage = stage_of({quad({1, -1, -1}, {0, 1, 0}, {0, 0, 2}), quad({1, 0, -1}, {0, h, 0}, {0, 0, 2})});
         expect_lit(stage.lit(level, sun_from({1, h / 2, 0})), {{0, 3}, {5, 8}}, 1e-5);
         expect_lit(stage.lit(level, sun_from({-1, h / 2, 0})), {{0, 5}, {7, 8}}, 1e-5);
-        // A lamp four metres on at height 2h looks over the sill as far as 4 metres before it.
+        // A lamp four meters on at height 2h looks over the sill as far as 4 meters before it.
         expect_lit(stage.lit(level, lamp_at({5, 2 * h, 0})), {{0, 1}, {5, 8}}, 1e-5);
     }
 }
@@ -171,7 +171,7 @@ TEST(ShadowSlices, AClosedBoxLetsNothingIn) {
 }
 
 TEST(ShadowSlices, WhatLiesInTheLightsBallCastsNoShadow) {
-    // The roof is 1 m under the lamp's centre: inside a ball of 1.5 m, outside one of 0.5 m.
+    // The roof is 1 m under the lamp's center: inside a ball of 1.5 m, outside one of 0.5 m.
     const Stage stage = stage_of({quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1})});
     expect_lit(stage.lit(level, lamp_at({0, 2, 0}, 0.5)), {{0, 3}, {5, 8}});
     expect_lit(stage.lit(level, lamp_at({0, 2, 0}, 1.5)), {{0, 8}});

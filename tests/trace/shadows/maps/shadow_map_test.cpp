@@ -53,7 +53,7 @@ float share_at(const ShadowMap& map, vec3 point) {
     return share[0];
 }
 
-// The depth stored at texel centres, for the whole first picture.
+// The depth stored at texel centers, for the whole first picture.
 template<class Visit> void visit_texels(const ShadowMap& map, size_t image, const Visit& visit) {
     const ShadowImage& p = map.images[image];
     for (int y = 0; y < p.size.y; ++y)
@@ -136,7 +136,7 @@ TEST(ShadowMap, SunStoresDepthAlongItsDirection) {
 }
 
 TEST(ShadowMap, NoSurfaceShadesItselfAtAnyAngle) {
-    // Catalogue: no self-shadow on lit planes at 1..89°, beams start within 1.5 texels. The error of a texel's depth on
+    // Catalog: no self-shadow on lit planes at 1..89°, beams start within 1.5 texels. The error of a texel's depth on
     // a plane at angle a to the light is half a texel · cot a, that is half a texel · cos a off the plane, twice that
     // with the four around, and as much again across the diagonal.
     const Stage stage({quad({-40, 0, -40}, {80, 0, 0}, {0, 0, 80})});
@@ -270,7 +270,7 @@ TEST(ShadowMap, TexelsStayWhereTheyAreWhenTheCameraMoves) {
 }
 
 TEST(ShadowMap, OrbitSeesTheSameShadows) {
-    // Catalogue 24: wherever the camera stands, a point away from edges is lit or not as a ray says.
+    // Catalog 24: wherever the camera stands, a point away from edges is lit or not as a ray says.
     Stage stage({box_of(vec3(-1, -1, -1), vec3(1, 0, 1)), quad({-6, -2, -6}, {12, 0, 0}, {0, 0, 12})});
     const Light light = light_of(LightKind::sun, vec3(0), {0.5f, -1, 0.2f});
     for (int degrees = 0; degrees < 360; degrees += 15) {
