@@ -21,7 +21,7 @@ View still_view(float x = 0) { return view_of({x, 1.2f, 9}, {0, 1, 0}); }
 FroxelScene scene_of(const Snapshot& snapshot, bool amortize = false) {
     FroxelScene scene;
     scene.snapshot = snapshot;
-    scene.settings = with_tile({}, still_view().size), scene.settings.amortize = amortize;
+    scene.settings.tile = 8, scene.settings.amortize = amortize;
     for (const Light& light : snapshot.lights) {
         scene.depths.push_back(make_light_depth(scene.snapshot, light, LightTransmittance::grid, 32));
         scene.cones.push_back(cone_falloff(light)), scene.columns.emplace_back();
