@@ -27,6 +27,7 @@ struct FroxelGrid {
     std::vector<int32_t> first_slice; // slice at or before the start of each of many equal depth intervals
     float stretches_per_meter = 0;
 
+    float thickness(size_t slice) const { return faces[slice + 1] - faces[slice]; } // in planar depth, meters
     int slices() const { return static_cast<int>(faces.size()) - 1; }
     size_t tiles() const { return static_cast<size_t>(size.x) * static_cast<size_t>(size.y); }
     size_t tile_index(ivec2 at) const {

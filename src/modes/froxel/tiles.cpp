@@ -143,7 +143,7 @@ void set_trust(const FroxelGrid& grid, FroxelTiles& tiles) {
     for (size_t tile = 0; tile < grid.tiles(); ++tile) {
         const float far = tiles.farthest[tile];
         const size_t k = static_cast<size_t>(slice_of(grid, far));
-        const float slack = std::max(grid.faces[k + 1] - grid.faces[k], far - tiles.nearest[tile]);
+        const float slack = std::max(grid.thickness(k), far - tiles.nearest[tile]);
         tiles.trusted[tile] = far + 0.5f * slack;
         tiles.trust_falloff[tile] = std::isinf(far) ? 0.0f : 1 / slack;
     }

@@ -19,7 +19,7 @@ Camera slanted_camera(bool ortho) {
 }
 
 TEST(FroxelGrid, SmallImagesHaveSmallFroxels) {
-    for (const auto& [lines, tile] : {std::pair{1080, 8}, {360, 8}, {180, 4}, {90, 2}, {54, 1}, {18, 1}})
+    for (const auto& [lines, tile] : {std::pair{1080, 8}, {360, 8}, {270, 4}, {180, 2}, {108, 1}, {18, 1}})
         EXPECT_EQ(with_tile({}, {lines * 16 / 9, lines}).tile, tile) << lines;
     FroxelSettings chosen;
     chosen.tile = 16;

@@ -206,7 +206,7 @@ BeamSlice slice_around(const BeamWalk& walk, int slice, const Floats& before, co
     BeamSlice here;
     here.before = before;
     here.across = max(behind - here.before, 0.0f);
-    here.extinction = here.across * (1 / (grid.faces[k + 1] - grid.faces[k]));
+    here.extinction = here.across * (1 / grid.thickness(k));
     here.share = between_tiles(walk.taps, [&](size_t tile) { return froxels.beams.share(tile, walk.beam, slice); });
     return here;
 }

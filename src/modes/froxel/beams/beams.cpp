@@ -89,9 +89,11 @@ NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t in
 }
 
 NearLight near_to(const FroxelGrid& grid, const Light& light) {
-    constexpr float froxels = 14; // froxel widths
+    constexpr float widths = 14, slices = 20;
     const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);
-    return {z > 0 ? froxels * froxel_width(grid, z) : 0};
+    if (!(z > 0)) return {0};
+    const auto slice = static_cast<size_t>(slice_of(grid, z));
+    return {std::max(widths * froxel_width(grid, z), slices * grid.thickness(slice))};
 }
 
 float dimming(const LightDepth& depth) {

@@ -28,7 +28,7 @@ struct Packet {
 Floats find_extinctions(const Fill& fill, Packet& packet, const FroxelLanes& lanes, int slice, int sample) {
     const std::vector<Medium>& media = fill.scene.snapshot.media;
     const size_t k = static_cast<size_t>(slice), slices = static_cast<size_t>(fill.grid.slices());
-    const float thickness = fill.grid.faces[k + 1] - fill.grid.faces[k];
+    const float thickness = fill.grid.thickness(k);
     const size_t samples = static_cast<size_t>(fill.samples());
     const size_t place = ((packet.index * slices + k) * samples + static_cast<size_t>(sample)) * media.size() * 16;
     Floats sum = 0.0f;

@@ -161,7 +161,7 @@ FroxelLanes froxel_lanes(const FroxelGrid& grid, const FroxelSamples& points) {
 // Whether some medium is a sheet, its box thinner than the slice.
 bool holds_sheet(const Fill& fill, int slice) {
     const size_t k = static_cast<size_t>(slice);
-    const float thickness = fill.grid.faces[k + 1] - fill.grid.faces[k];
+    const float thickness = fill.grid.thickness(k);
     return std::ranges::any_of(fill.scene.snapshot.media, [&](const Medium& medium) {
         const vec3 sides = medium.world_bounds.size();
         return std::min(sides.x, std::min(sides.y, sides.z)) < thickness;
