@@ -41,9 +41,9 @@ ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const 
 }
 
 namespace {
-// Where a segment from `origin` passes through a triangle, as a fraction of its length; infinite = not (Möller and
-// Trumbore 1997).
-double passes(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, dvec3 origin, dvec3 way) {
+// Where a segment from `origin` hits a triangle, as a fraction of its length; infinite = nowhere (Möller and Trumbore
+// 1997).
+double hit_fraction(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, dvec3 origin, dvec3 way) {
     constexpr double never = std::numeric_limits<double>::infinity();
     const dvec3 a = mesh.corners[triangle.corners[0]], to = origin - a;
     const dvec3 ab = mesh.corners[triangle.corners[1]] - a, ac = mesh.corners[triangle.corners[2]] - a;
@@ -55,11 +55,12 @@ double passes(const ShadowMesh& mesh, const ShadowMesh::Triangle& triangle, dvec
 }
 
 LightPoint visible_point(const ShadowMesh& mesh, LightPoint center, dvec3 off) {
-    constexpr double at_center = 1e-6, gap = 1e-3; // of the offset: a triangle through the center hides half the sphere
+    // Fractions of the offset. A triangle through the center itself is passed: each side keeps its half of the points.
+    constexpr double at_center = 1e-6, gap = 1e-3;
     if (off == dvec3(0)) return center;
     double end = 1;
     for (const ShadowMesh::Triangle& triangle : mesh.triangles) {
-        const double at = passes(mesh, triangle, center.at, off);
+        const double at = hit_fraction(mesh, triangle, center.at, off);
         if (at > at_center && at - gap < end && !in_ball(mesh, triangle, center)) end = std::max(at - gap, 0.0);
     }
     center.at += end * off;

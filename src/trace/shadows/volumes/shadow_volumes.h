@@ -41,8 +41,8 @@ struct ShadowVolumes {
 ShadowVolumes make_shadow_volumes(std::shared_ptr<const ShadowMesh> mesh, const LightPoint& light,
                                   std::optional<ShadowCone> reach = {});
 
-// A point of a light's sphere, `off` from its center, or the point just in front of the first triangle on the way there
-// that casts a shadow: behind a wall that the sphere sticks in, it would light nothing of the room.
+// The point of a light's sphere at `off` from its center or, if a shadow caster lies between, a point just in front of
+// that: behind a wall that cuts through the sphere, it would not light the room.
 LightPoint visible_point(const ShadowMesh& mesh, LightPoint center, dvec3 off);
 
 // From a corner toward the light, of any length.
