@@ -33,13 +33,13 @@ constexpr size_t part_count(size_t lights) { return lights + other_lights; }
 // Up to 16 neighboring rays (4×4 pixels) of one pixel sample.
 struct RayBatch {
     std::span<const Ray> rays{};
-    std::span<const uint32_t> ids{};       // per ray, unique to pixel and sample: seed for random numbers
-    std::span<vec3> parts{};               // empty, or rays × part_count(lights) radiances that the mode adds to
-    std::span<const float> jitter{};       // per ray, in [0,1), stratified over the samples of a pixel; empty = ½
-    std::span<const SampleIndex> places{}; // per ray: position in its pixel's low-discrepancy sequence; empty = use ids
-    std::span<const float> clip_near{};    // Surfaces::own, per ray: nearer surfaces are ignored, fog is not; empty = 0
-    std::span<const vec2> positions{};     // of the rays in the image, in pixels from the upper left; empty = unknown
-    std::span<const bool> open{};          // per ray: does not hit a surface; empty = unknown
+    std::span<const uint32_t> ids{}; // per ray, unique to pixel and sample: seed for random numbers
+    std::span<vec3> parts{};         // empty, or rays × part_count(lights) radiances that the mode adds to
+    std::span<const float> jitter{}; // per ray, in [0,1), stratified over the samples of a pixel; empty = ½
+    std::span<const SampleIndex> sample_indices{}; // per ray, in its pixel's low-discrepancy sequence; empty = use ids
+    std::span<const float> clip_near{}; // Surfaces::own, per ray: nearer surfaces are ignored, fog is not; empty = 0
+    std::span<const vec2> positions{};  // of the rays in the image, in pixels from the upper left; empty = unknown
+    std::span<const bool> open{};       // per ray: does not hit a surface; empty = unknown
 
     vec3& part(size_t ray, size_t index) const { return parts[ray * (parts.size() / rays.size()) + index]; }
     size_t index_of(OtherLight light) const {

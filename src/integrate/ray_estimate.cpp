@@ -13,15 +13,16 @@ RayEstimate estimate_ray(const ScatterFunction& scatter, const Ray& ray, int sam
             const size_t count = static_cast<size_t>(std::min(16, samples - first));
             Ray rays[16];
             uint32_t ids[16];
-            SampleIndex places[16];
+            SampleIndex sample_indices[16];
             Scatter results[16];
             for (size_t i = 0; i < count; ++i) {
                 const uint32_t index = static_cast<uint32_t>(first) + static_cast<uint32_t>(i);
                 rays[i] = ray;
                 ids[i] = hash(index, static_cast<uint32_t>(b), 77u);
-                places[i] = {hash(static_cast<uint32_t>(b), 78u), index};
+                sample_indices[i] = {hash(static_cast<uint32_t>(b), 78u), index};
             }
-            scatter({.rays = {rays, count}, .ids = {ids, count}, .places = {places, count}}, {results, count});
+            scatter({.rays = {rays, count}, .ids = {ids, count}, .sample_indices = {sample_indices, count}},
+                    {results, count});
             for (size_t i = 0; i < count; ++i) means[b] += dvec3(part(results[i])) / static_cast<double>(samples);
         }
     });

@@ -23,7 +23,7 @@ struct PendingRays {
     Ray rays[16];
     uint32_t ids[16];
     float jitter[16];
-    SampleIndex places[16];
+    SampleIndex sample_indices[16];
     vec2 positions[16];
     bool open[16];
 
@@ -32,7 +32,7 @@ struct PendingRays {
                 .ids = {ids, count},
                 .parts = parts,
                 .jitter = {jitter, count},
-                .places = {places, count},
+                .sample_indices = {sample_indices, count},
                 .positions = {positions, count},
                 .open = {open, count}};
     }
@@ -69,7 +69,7 @@ void compute_tile(const Snapshot& snapshot, const ScatterFunction& whole, ivec2 
             pending.rays[count] = ray_through(buffer, {x, y});
             pending.ids[count] = hash(static_cast<uint32_t>(y * size.x + x), view.seed, view.frame, use_id);
             pending.jitter[count] = to_unit(jitter_bits(view.jitter, {x, y}, view.frame, view.seed));
-            pending.places[count] = {hash(pending.ids[count], use_id), 0};
+            pending.sample_indices[count] = {hash(pending.ids[count], use_id), 0};
             pending.positions[count] = (vec2(x, y) + 0.5f) * vec2(view.size) / vec2(size);
         }
     find_lengths(snapshot, view.camera, pending);
@@ -132,12 +132,12 @@ void look_up(const FogBuffer& buffer, const ScatterFunction& whole, const RayBat
         const size_t i = missed[k];
         pending.rays[k] = batch.rays[i], pending.ids[k] = batch.ids[i];
         pending.jitter[k] = batch.jitter.empty() ? 0.5f : batch.jitter[i];
-        if (!batch.places.empty()) pending.places[k] = batch.places[i];
+        if (!batch.sample_indices.empty()) pending.sample_indices[k] = batch.sample_indices[i];
         if (!batch.positions.empty()) pending.positions[k] = batch.positions[i];
         if (!batch.open.empty()) pending.open[k] = batch.open[i];
     }
     RayBatch rest = pending.batch(parts);
-    if (batch.places.empty()) rest.places = {};
+    if (batch.sample_indices.empty()) rest.sample_indices = {};
     if (batch.positions.empty()) rest.positions = {};
     if (batch.open.empty()) rest.open = {};
     whole(rest, {fog, count});

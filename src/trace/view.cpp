@@ -73,18 +73,18 @@ int moment_at(const View& view, ivec2 pixel, int sample) {
     return static_cast<int>(time * moments >> 32);
 }
 
-Ray sample_ray(const View& view, const Camera& camera, vec2 position, SampleIndex place) {
+Ray sample_ray(const View& view, const Camera& camera, vec2 position, SampleIndex sample) {
     if (!camera.lens) return camera_ray(camera, view.size, position);
-    const Sample2 u = sample2(place.index, hash(place.sequence, use_lens));
+    const Sample2 u = sample2(sample.index, hash(sample.sequence, use_lens));
     return lens_ray(camera, view.size, position, aperture_point(camera.lens, {u.x, u.y}));
 }
 
 SamplePoint sample_point(const View& view, ivec2 pixel, int sample) {
     const vec2 center = vec2(pixel) + 0.5f;
     if (samples_of(view, pixel) == 1 || view.filter == PixelFilter::center) return {center};
-    const SampleIndex place = sample_index(view, pixel, sample);
-    if (beside_lamp(view, center)) return lamp_sample(view, center, place);
-    const Sample2 u = sample2(place.index, place.sequence);
+    const SampleIndex point = sample_index(view, pixel, sample);
+    if (beside_lamp(view, center)) return lamp_sample(view, center, point);
+    const Sample2 u = sample2(point.index, point.sequence);
     return {center + view.filter_radius * filter_point(view.filter, {u.x, u.y})};
 }
 }

@@ -101,9 +101,9 @@ int moment_at(const View& view, ivec2 pixel, int sample);
 
 // The camera ray of a sample at a position, through a point of the lens if there is one. Lens points follow a separate
 // scrambled (0,2)-sequence.
-Ray sample_ray(const View& view, const Camera& camera, vec2 position, SampleIndex place);
-inline Ray sample_ray(const View& view, vec2 position, SampleIndex place) {
-    return sample_ray(view, view.camera, position, place);
+Ray sample_ray(const View& view, const Camera& camera, vec2 position, SampleIndex sample);
+inline Ray sample_ray(const View& view, vec2 position, SampleIndex sample) {
+    return sample_ray(view, view.camera, position, sample);
 }
 
 // Importance sampled by the filter, with unit weights, or by filter times glow near a lamp.

@@ -71,8 +71,8 @@ void append_lines(const FireRay& fire_ray, const FirePoint& point, float which, 
     for (size_t field = 0; field < fire_ray.fire.fields.size(); ++field) {
         const EmissionOnLine hit = emission_on_line(fire_ray.fire, field, {point.there.point, direction, infinity}, v);
         if (!(hit.inverse_density > 0)) continue;
-        append_path(fire_ray, point, hit.place, fire_ray.around(hit.place.position),
-                    double{hit.inverse_density} * hit.place.line_density);
+        append_path(fire_ray, point, hit.sample, fire_ray.around(hit.sample.position),
+                    double{hit.inverse_density} * hit.sample.line_density);
     }
 }
 

@@ -8,8 +8,9 @@
 
 namespace tyndall {
 vec2 point_numbers(const RayBatch& batch, size_t ray, uint32_t k, uint32_t count, uint32_t use) {
-    const SampleIndex place = batch.places.empty() ? SampleIndex{0, batch.ids[ray]} : batch.places[ray];
-    const Sample2 u = sample2(place.index * count + k, hash(place.sequence, use));
+    const SampleIndex sample =
+        batch.sample_indices.empty() ? SampleIndex{0, batch.ids[ray]} : batch.sample_indices[ray];
+    const Sample2 u = sample2(sample.index * count + k, hash(sample.sequence, use));
     return {u.x, u.y};
 }
 

@@ -16,14 +16,14 @@ LightPoint light_point(const RayBatch& batch, size_t ray, const Light& light, si
     if (!is_soft(light)) return center_of(light);
     const uint32_t index = static_cast<uint32_t>(light_index);
     Sample2 u, v;
-    if (batch.places.empty()) {
+    if (batch.sample_indices.empty()) {
         const uint32_t key =
             k ? hash(batch.ids[ray], use_light_point, index, k) : hash(batch.ids[ray], use_light_point, index);
         u = {to_unit(hash(key, 0u)), to_unit(hash(key, 1u))}, v = {to_unit(hash(key, 2u)), 0};
     } else {
-        const SampleIndex place = batch.places[ray];
-        u = sample2(place.index * count + k, hash(place.sequence, use_light_point, index, 0u));
-        v = sample2(place.index * count + k, hash(place.sequence, use_light_point, index, 1u));
+        const SampleIndex sample = batch.sample_indices[ray];
+        u = sample2(sample.index * count + k, hash(sample.sequence, use_light_point, index, 0u));
+        v = sample2(sample.index * count + k, hash(sample.sequence, use_light_point, index, 1u));
     }
     return point_on(light, batch.rays[ray], {u.x, u.y, v.x});
 }

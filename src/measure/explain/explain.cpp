@@ -88,7 +88,7 @@ void add_surface(const RayScene& scene, const Prepared& prepared, int layer, con
     const uint32_t points = static_cast<uint32_t>(scene.truth.terms.light_points);
     std::vector<vec2> u(points);
     for (uint32_t p = 0; p < points; ++p) {
-        const Sample2 random = sample2(path.place.index * points + p, hash(path.seed, layer, use_soft_light));
+        const Sample2 random = sample2(path.sample.index * points + p, hash(path.seed, layer, use_soft_light));
         u[p] = {random.x, random.y};
     }
     SurfaceOnRay surface;
@@ -127,7 +127,7 @@ void follow(const RayScene& scene, RayReport& report) {
         const RayBatch batch{.rays = {&ray, 1},
                              .ids = {numbers.ids, 1},
                              .jitter = {numbers.jitter, 1},
-                             .places = {numbers.places, 1},
+                             .sample_indices = {numbers.sample_indices, 1},
                              .positions = {numbers.positions, 1},
                              .open = {&open, 1}};
         const RaySegment segment{ray, batch, report.end, report.depth, mean_component(path.throughput)};

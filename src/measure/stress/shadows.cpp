@@ -214,13 +214,13 @@ double short_rays_off(Trial& trial) {
     const ScatterFunction scatter = trial.mode->prepare(scene.view, scene.snapshot, scene.settings, nullptr);
     std::vector<Ray> rays(16);
     std::vector<uint32_t> ids(16, 3);
-    std::vector<SampleIndex> places(16);
+    std::vector<SampleIndex> sample_indices(16);
     for (size_t i = 0; i < rays.size(); ++i) {
         rays[i] = camera_ray(scene.view.camera, scene.view.size, vec2(3.0f * static_cast<float>(i), 13));
         rays[i].t_max = static_cast<float>(trial.value);
     }
     std::vector<Scatter> results(16);
-    scatter({.rays = rays, .ids = ids, .places = places}, results);
+    scatter({.rays = rays, .ids = ids, .sample_indices = sample_indices}, results);
     double most = 0;
     for (const Scatter& result : results) {
         trial.faults.non_finite += !is_finite(result.radiance) || !std::isfinite(result.transmittance);

@@ -31,7 +31,7 @@ namespace tyndall {
 namespace {
 struct FroxelFrame {
     FroxelScene scene;
-    FroxelBuffer picture;
+    FroxelBuffer buffer;
     bool has_history = false;
     int frame = 0;
 
@@ -70,7 +70,7 @@ FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings&
 // A camera whose pixels are the grid's tiles.
 Camera tile_camera(const FroxelGrid& grid) {
     Camera camera = grid.camera;
-    const float wider = static_cast<float>(grid.size.y * grid.tile) / static_cast<float>(grid.picture.y);
+    const float wider = static_cast<float>(grid.size.y * grid.tile) / static_cast<float>(grid.image_size.y);
     camera.vertical_fov = 2 * std::atan(std::tan(0.5f * camera.vertical_fov) * wider);
     camera.ortho_height *= wider;
     return camera;
@@ -134,8 +134,8 @@ Reprojection remembered(std::shared_ptr<FroxelHistory> memory, const FroxelStati
 // This frame's sums, blended with the history, which then holds this frame.
 FroxelSums sums_with_history(FroxelFrame& frame, FroxelStatics& statics, std::shared_ptr<FroxelHistory>& memory) {
     const FroxelSettings& settings = frame.scene.settings;
-    const float view_depth = frame.picture.view_depth;
-    FroxelBeams* beams = &frame.picture.beams;
+    const float view_depth = frame.buffer.view_depth;
+    FroxelBeams* beams = &frame.buffer.beams;
     FroxelLight light;
     FroxelSums sums;
     if (frame.frame == 0 || !memory) {
@@ -169,15 +169,14 @@ bool has(const FroxelScene& scene, OtherLight light) {
 }
 
 void make_parts(FroxelFrame& frame) {
-    const FroxelBuffer& picture = frame.picture;
+    const FroxelBuffer& buffer = frame.buffer;
     const size_t lights = frame.scene.snapshot.lights.size();
     for (size_t part = 0; part < part_count(lights); ++part) {
         if (part >= lights ? !has(frame.scene, OtherLight{part - lights}) : frame.scene.is_beam(part)) continue;
         const FillPass pass{.only = static_cast<int>(part), .frame = frame.frame};
         frame.indices.push_back(part);
-        frame.parts.push_back(integrate_froxels(picture.grid, picture.tiles,
-                                                fill_froxels(frame.scene, picture.grid, picture.tiles, pass),
-                                                picture.view_depth));
+        frame.parts.push_back(integrate_froxels(
+            buffer.grid, buffer.tiles, fill_froxels(frame.scene, buffer.grid, buffer.tiles, pass), buffer.view_depth));
     }
 }
 
@@ -187,7 +186,7 @@ void look_up_with_parts(FroxelFrame& frame, const RayBatch& batch, std::span<Sca
     std::call_once(frame.parts_made, [&] { make_parts(frame); });
     const size_t parts = frame.parts.size(), beams = frame.scene.beams.size();
     std::vector<vec3> light(batch.rays.size() * parts), of_beams(batch.rays.size() * beams);
-    look_up_froxels(frame.picture, batch, results, frame.parts, light, of_beams);
+    look_up_froxels(frame.buffer, batch, results, frame.parts, light, of_beams);
     for (size_t ray = 0; ray < batch.rays.size(); ++ray) {
         const std::span<const vec3> of_ray{light.data() + ray * parts, parts};
         vec3 sum(0), scale(1), rest(0), remembered = results[ray].radiance;
@@ -223,18 +222,18 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
     set_shadows(*frame, statics);
     set_pixel_shadows(view, frame->scene);
 
-    FroxelBuffer& picture = frame->picture;
-    picture.lookup = settings.of<FroxelSettings>().lookup, picture.view_depth = settings.style.view_depth;
-    picture.grid = statics.grid, picture.tiles = statics.tiles;
-    picture.beams = make_froxel_beams(frame->scene, picture.grid);
-    picture.scene = &frame->scene;
-    picture.sums =
+    FroxelBuffer& buffer = frame->buffer;
+    buffer.lookup = settings.of<FroxelSettings>().lookup, buffer.view_depth = settings.style.view_depth;
+    buffer.grid = statics.grid, buffer.tiles = statics.tiles;
+    buffer.beams = make_froxel_beams(frame->scene, buffer.grid);
+    buffer.scene = &frame->scene;
+    buffer.sums =
         history ? sums_with_history(*frame, statics, history->froxels)
-                : integrate_froxels(picture.grid, picture.tiles,
-                                    fill_froxels(frame->scene, picture.grid, picture.tiles, {.beams = &picture.beams}),
-                                    picture.view_depth);
+                : integrate_froxels(buffer.grid, buffer.tiles,
+                                    fill_froxels(frame->scene, buffer.grid, buffer.tiles, {.beams = &buffer.beams}),
+                                    buffer.view_depth);
     ScatterFunction scatter = [frame](const RayBatch& batch, std::span<Scatter> results) {
-        if (batch.parts.empty()) return look_up_froxels(frame->picture, batch, results);
+        if (batch.parts.empty()) return look_up_froxels(frame->buffer, batch, results);
         look_up_with_parts(*frame, batch, results);
     };
     const size_t lights = snapshot.lights.size();

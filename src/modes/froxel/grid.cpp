@@ -1,13 +1,13 @@
 #include "modes/froxel/grid.h"
 
 namespace tyndall {
-FroxelGrid make_froxel_grid(const Camera& camera, ivec2 picture, int tile) {
+FroxelGrid make_froxel_grid(const Camera& camera, ivec2 image_size, int tile) {
     FroxelGrid grid;
-    grid.camera = camera, grid.picture = picture, grid.tile = tile;
-    grid.size = (picture + tile - 1) / tile + 2;
+    grid.camera = camera, grid.image_size = image_size, grid.tile = tile;
+    grid.size = (image_size + tile - 1) / tile + 2;
 
     // As in camera_ray(), a pixel's position on the plane at unit depth is linear in the pixel.
-    const vec2 extent(picture);
+    const vec2 extent(image_size);
     const float height = camera.ortho_height > 0 ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov);
     const vec3 x = camera.right * (height / extent.y), y = -camera.up * (height / extent.y);
     const vec3 corner = -0.5f * (extent.x * x + extent.y * y);
@@ -55,8 +55,8 @@ vec3 project(const FroxelGrid& grid, vec3 point) {
     const float z = glm::dot(offset, camera.forward);
     const bool ortho = camera.ortho_height > 0;
     const float height = ortho ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov) * z;
-    const float per_meter = static_cast<float>(grid.picture.y) / height;
+    const float per_meter = static_cast<float>(grid.image_size.y) / height;
     const vec2 across(glm::dot(offset, camera.right), -glm::dot(offset, camera.up));
-    return vec3(across * per_meter + 0.5f * vec2(grid.picture), z);
+    return vec3(across * per_meter + 0.5f * vec2(grid.image_size), z);
 }
 }

@@ -14,9 +14,9 @@
 namespace tyndall {
 struct FroxelGrid {
     Camera camera;
-    ivec2 picture{0}; // pixels
-    int tile = 1;     // pixels per froxel, across and down
-    ivec2 size{0};    // tiles, including the border around the image
+    ivec2 image_size{0}; // pixels
+    int tile = 1;        // pixels per froxel, across and down
+    ivec2 size{0};       // tiles, including the border around the image
     std::vector<float> faces;
 
     // The point at pixel (x, y) and planar depth z: origin + x·origin_x + y·origin_y + z (step + x·step_x + y·step_y).
@@ -56,7 +56,7 @@ inline Ray line_ray(const FroxelGrid& grid, vec2 pixel) {
 }
 
 // The tiles of an image; set_slices() adds the slices.
-FroxelGrid make_froxel_grid(const Camera& camera, ivec2 picture, int tile);
+FroxelGrid make_froxel_grid(const Camera& camera, ivec2 image_size, int tile);
 
 // Sets slices from `near` to `far`, the last one `growth` times as thick as the first, then `tail` increasingly long
 // ones up to `end` (no tail if end <= far).

@@ -55,7 +55,7 @@ FroxelStatics make_statics(const View& view, const Snapshot& snapshot, const Fro
                            const FroxelStatics* before) {
     FroxelStatics statics;
     statics.media = snapshot.media, statics.occluders = snapshot.occluders;
-    statics.same_view = before && before->grid.picture == view.size && before->grid.tile == settings.tile &&
+    statics.same_view = before && before->grid.image_size == view.size && before->grid.tile == settings.tile &&
                         same(before->grid.camera, view.camera) && same(before->occluders, snapshot.occluders);
     statics.same_fog = statics.same_froxels = statics.same_view && same(before->media, snapshot.media);
     if (statics.same_fog) {

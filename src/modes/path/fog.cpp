@@ -126,11 +126,11 @@ void gather_field(const PathState& state, Segment& line, size_t number) {
     if (!(hit.inverse_density > 0)) return;
     int& lookups = state.results[line.vertex.lane].steps;
     ++lookups;
-    if (!(max_component(hit.place.emission) > 0)) return;
-    const float colliding = collision_pdf(state.snapshot, hit.place.position, lookups);
+    if (!(max_component(hit.sample.emission) > 0)) return;
+    const float colliding = collision_pdf(state.snapshot, hit.sample.position, lookups);
     const float share = line.transmittance * line_transmittance(state, line, {0, hit.distance}) *
-                        fire_shares(line, hit.place, hit.distance, colliding).picked;
-    add_light(state, line, hit.place.emission * (share * hit.inverse_density), OtherLight::emission,
+                        fire_shares(line, hit.sample, hit.distance, colliding).picked;
+    add_light(state, line, hit.sample.emission * (share * hit.inverse_density), OtherLight::emission,
               state.order == 0 || line.vertex.in_fog);
 }
 

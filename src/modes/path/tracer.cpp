@@ -270,7 +270,7 @@ void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scat
         PathVertex vertex;
         vertex.lane = lane, vertex.ray = batch.rays[lane], vertex.id = batch.ids[lane];
         vertex.skip = batch.clip_near.empty() ? 0 : batch.clip_near[lane];
-        vertex.sample = batch.places.empty() ? SampleIndex{vertex.id, 0} : batch.places[lane];
+        vertex.sample = batch.sample_indices.empty() ? SampleIndex{vertex.id, 0} : batch.sample_indices[lane];
         scratch.vertices.push_back(vertex);
     }
     const int orders = tracer.settings.orders;

@@ -24,10 +24,10 @@ Path camera_path(const View& view, bool in_moments, ivec2 pixel, int sample, int
     result.off_center = glm::dot(off, off), result.weight = weight;
 
     Path path;
-    path.place = sample_index(view, pixel, sample);
+    path.sample = sample_index(view, pixel, sample);
     if (in_moments) path.moment = moment_at(view, pixel, sample);
     const Camera& camera = in_moments ? view.shutter->cameras[static_cast<size_t>(path.moment)] : view.camera;
-    path.ray = sample_ray(view, camera, position, path.place);
+    path.ray = sample_ray(view, camera, position, path.sample);
     const float along = std::max(glm::dot(path.ray.direction, camera.forward), 1e-6f);
     path.skip = camera.near / along;
     path.screen = position / vec2(view.size), path.position = position;
@@ -134,13 +134,13 @@ RayInputs ray_inputs(const View& view, int layer, const PathPacket& s) {
     RayInputs inputs;
     for (int i = 0; i < s.count; ++i) {
         const Path& path = s.path[i];
-        const uint32_t id = hash(path.seed, path.place.index, layer, use_id);
+        const uint32_t id = hash(path.seed, path.sample.index, layer, use_id);
         const uint32_t within = hash(id, use_jitter) / (2 * path.samples);
         inputs.ids[i] = id;
         const uint32_t shift = path.shift + static_cast<uint32_t>(layer) * 0x9e3779b9u + within;
-        inputs.jitter[i] = view.jitter == Jitter::none ? 0.5f : stratified(path.place.index, shift);
+        inputs.jitter[i] = view.jitter == Jitter::none ? 0.5f : stratified(path.sample.index, shift);
         inputs.positions[i] = path.position;
-        inputs.places[i] = path.place;
+        inputs.sample_indices[i] = path.sample;
     }
     return inputs;
 }
@@ -158,7 +158,7 @@ void add_light(const FrameTracer& tracer, PathPacket& s, std::span<PixelSample> 
                          .ids = {inputs.ids, count},
                          .parts = parts,
                          .jitter = {inputs.jitter, count},
-                         .places = {inputs.places, count},
+                         .sample_indices = {inputs.sample_indices, count},
                          .clip_near = {near, count},
                          .positions = {inputs.positions, count}};
     tyndall::scatter(tracer, batch, {scatter, count});

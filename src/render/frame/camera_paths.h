@@ -18,7 +18,7 @@ struct Path {
     vec3 fog{1};          // throughput of fog alone
     uint32_t seed = 0;    // of the pixel and batch in this frame
     uint32_t shift = 0;   // of its jitter
-    SampleIndex place;    // in the batch
+    SampleIndex sample;   // in the batch
     uint32_t samples = 1; // of the batch so far
     vec2 screen{0};       // image position, 0..1
     vec2 position{0};     // the same in pixels
@@ -52,7 +52,7 @@ struct SurfaceHits {
 struct RayInputs {
     uint32_t ids[16];
     float jitter[16];
-    SampleIndex places[16];
+    SampleIndex sample_indices[16];
     vec2 positions[16];
 };
 

@@ -45,7 +45,7 @@ void add_fog(const FrameTracer& tracer, int layer, PathPacket& s, std::span<Pixe
                          .ids = {inputs.ids, count},
                          .parts = fog_parts,
                          .jitter = {inputs.jitter, count},
-                         .places = {inputs.places, count},
+                         .sample_indices = {inputs.sample_indices, count},
                          .positions = {inputs.positions, count},
                          .open = {open, count}};
     tyndall::scatter(tracer, batch, {scatter, count});
@@ -75,7 +75,7 @@ void add_surfaces(const FrameTracer& tracer, int layer, const PathPacket& s, con
     for (size_t k = 0; soft && k < hits.count; ++k) {
         const Path& path = s.path[hits.which[k]];
         for (size_t p = 0; p < points; ++p) {
-            const uint32_t index = path.place.index * static_cast<uint32_t>(points) + static_cast<uint32_t>(p);
+            const uint32_t index = path.sample.index * static_cast<uint32_t>(points) + static_cast<uint32_t>(p);
             const Sample2 random = sample2(index, hash(path.seed, layer, use_soft_light));
             u[k * points + p] = {random.x, random.y};
         }

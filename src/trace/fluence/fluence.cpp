@@ -21,7 +21,7 @@
 namespace tyndall {
 namespace {
 constexpr int64_t block_paths = 512; // traced by one thread at a time
-constexpr int64_t round_blocks = 64; // traced before their flights are put into the grid
+constexpr int64_t round_blocks = 64; // traced before their segments are put into the grid
 constexpr int slab_cells = 4;        // along x, filled by one thread at a time
 constexpr int64_t pilot_share = 8;   // the pilot traces 1 / pilot_share as many paths, to find where light matters
 constexpr int64_t fewest_hits = 8;   // pilot hits per stratum, on average; coarser strata below that
@@ -42,22 +42,22 @@ FluenceGrid grid_over(const Box& fog, int resolution) {
     return grid;
 }
 
-// Adds the lengths of a flight in the cells of a slab (Amanatides & Woo 1987).
-void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid, FluenceOctants& octants) {
+// Adds the lengths of a segment in the cells of a slab (Amanatides & Woo 1987).
+void add_segment(const PathSegment& segment, int first, int last, FluenceGrid& grid, FluenceOctants& octants) {
     const float scale = 1 / grid.cell;
-    const float start = (flight.from.x - grid.bounds.low.x) * scale,
-                end_x = start + flight.length * flight.direction.x * scale;
+    const float start = (segment.from.x - grid.bounds.low.x) * scale,
+                end_x = start + segment.length * segment.direction.x * scale;
     if (std::max(start, end_x) < static_cast<float>(first) || std::min(start, end_x) > static_cast<float>(last)) return;
-    const vec3 from = (flight.from - grid.bounds.low) * scale, step = flight.direction * scale;
+    const vec3 from = (segment.from - grid.bounds.low) * scale, step = segment.direction * scale;
     const Box slab{vec3(first, 0, 0), vec3(last, grid.size.y, grid.size.z)};
-    const Interval<float> inside = clip(slab, from, step, {0, flight.length});
+    const Interval<float> inside = clip(slab, from, step, {0, segment.length});
     if (inside.empty()) return;
 
-    const float brightness = luminance(flight.light);
+    const float brightness = luminance(segment.light);
     float values[12];
-    for (int c = 0; c < 3; ++c) values[c] = flight.light[c];
+    for (int c = 0; c < 3; ++c) values[c] = segment.light[c];
     for (int axis = 0; axis < 3; ++axis)
-        for (int c = 0; c < 3; ++c) values[3 + 3 * axis + c] = flight.light[c] * flight.direction[axis];
+        for (int c = 0; c < 3; ++c) values[3 + 3 * axis + c] = segment.light[c] * segment.direction[axis];
 
     const ivec3 lowest(first, 0, 0), highest(last - 1, grid.size.y - 1, grid.size.z - 1);
     ivec3 cell = glm::clamp(ivec3(glm::floor(from + inside.low * step)), lowest, highest);
@@ -85,12 +85,12 @@ void add_flight(const Flight& flight, int first, int last, FluenceGrid& grid, Fl
     }
 }
 
-// Every slab adds the flights in the same order. `octants` is empty if it is not needed.
-void add_flights(const std::vector<LightPathResult>& blocks, FluenceGrid& grid, FluenceOctants& octants) {
+// Every slab adds the segments in the same order. `octants` is empty if it is not needed.
+void add_segments(const std::vector<LightPathResult>& blocks, FluenceGrid& grid, FluenceOctants& octants) {
     parallel_for((grid.size.x + slab_cells - 1) / slab_cells, [&](int64_t slab) {
         const int first = static_cast<int>(slab) * slab_cells, last = std::min(first + slab_cells, grid.size.x);
         for (const LightPathResult& block : blocks)
-            for (const Flight& flight : block.flights) add_flight(flight, first, last, grid, octants);
+            for (const PathSegment& segment : block.segments) add_segment(segment, first, last, grid, octants);
     });
 }
 
@@ -102,11 +102,11 @@ void add_half(const Snapshot& snapshot, const RayStrata& strata, const LightPath
     for (int64_t round = 0; round < half; round += round_blocks * block_paths) {
         parallel_for(round_blocks, [&](int64_t b) {
             LightPathResult& result = blocks[static_cast<size_t>(b)];
-            result.flights.clear();
+            result.segments.clear();
             const int64_t done = round + b * block_paths, count = std::min(block_paths, half - done);
             if (count > 0) trace_light_paths(snapshot, strata, rules, first + 2 * done, count, paths, result, 2);
         });
-        add_flights(blocks, grid, octants);
+        add_segments(blocks, grid, octants);
     }
 }
 
@@ -141,7 +141,7 @@ Pilot fly_pilot(const Snapshot& snapshot, LightPathRules rules, int64_t paths) {
         result.of_stratum.resize(pilot.squares.size());
         trace_light_paths(snapshot, strata, rules, b * block_paths, std::min(block_paths, paths - b * block_paths),
                           paths, result);
-        result.flights = {};
+        result.segments = {};
     });
     for (const LightPathResult& result : results) {
         pilot.hits += result.hits;
@@ -236,7 +236,7 @@ FluenceGrid make_fluence(const Snapshot& snapshot, const FluenceSettings& settin
     FluenceGrid grid = grid_over(fog_bounds(snapshot, rules.reach), settings.resolution);
     if (grid.empty() || !has_lights(snapshot)) return {};
     rules.reach.grow(grid.bounds); // fills cells at the border like all others
-    rules.noted = grid.bounds, rules.orders = settings.orders, rules.seed = seed;
+    rules.recorded = grid.bounds, rules.orders = settings.orders, rules.seed = seed;
     const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
     FluenceOctants octants(surfaces ? grid.values.size() / 12 * 8 : 0, vec4(0));
     const RayStrata strata = strata_by_pilot(snapshot, rules, settings.paths);

@@ -11,21 +11,21 @@
 
 namespace tyndall {
 namespace {
-constexpr int certain_orders = 4;      // scattering events before Russian roulette may end a path
-constexpr int max_flights = 65536;     // per path, passed BLEND surfaces included; Russian roulette ends it sooner
-constexpr size_t walkers_at_once = 16; // one packet of the ray tracer
+constexpr int certain_orders = 4;    // scattering events before Russian roulette may end a path
+constexpr int max_segments = 65536;  // per path, passed BLEND surfaces included; Russian roulette ends it sooner
+constexpr size_t paths_at_once = 16; // one packet of the ray tracer
 
 bool is_endless(const Medium& medium) { return !is_finite(medium.world_bounds.size()); }
 
-// The current vertex of a path.
-struct PathVertex {
+// A path, at its current vertex.
+struct LightPath {
     Ray ray;
     vec3 light{0}; // power at the light, over the path's probability
-    vec3 share{1}; // throughput
-    int light_index = 0, order = 0, flights = 0;
+    vec3 throughput{1};
+    int light_index = 0, order = 0, segments = 0;
     size_t stratum = 0;
-    float flown = 0; // Σ power · length of the recorded flights
-    bool walking = false;
+    float recorded = 0; // Σ power · length of the recorded segments
+    bool alive = false;
     RandomStream random;
 
     vec2 pair() {
@@ -34,7 +34,8 @@ struct PathVertex {
     }
 };
 
-struct Walk {
+// What all paths share.
+struct LightTracing {
     const Snapshot& snapshot;
     const RayStrata& strata;
     const LightPathRules& rules;
@@ -44,132 +45,133 @@ struct Walk {
 };
 
 // Starts path `index` of `total`.
-PathVertex start(const Walk& walk, int64_t index, int64_t total) {
-    PathVertex walker;
-    walker.random = {hash(walk.rules.seed, static_cast<uint32_t>(index), static_cast<uint32_t>(index >> 32))};
-    const std::vector<double>& sums = walk.strata.cumulative;
-    const double wanted = (static_cast<double>(index) + walker.random.next()) / static_cast<double>(total);
+LightPath start(const LightTracing& tracing, int64_t index, int64_t total) {
+    LightPath path;
+    path.random = {hash(tracing.rules.seed, static_cast<uint32_t>(index), static_cast<uint32_t>(index >> 32))};
+    const std::vector<double>& sums = tracing.strata.cumulative;
+    const double wanted = (static_cast<double>(index) + path.random.next()) / static_cast<double>(total);
     const auto found = std::ranges::upper_bound(sums, wanted * sums.back());
-    walker.stratum = std::min<size_t>(static_cast<size_t>(found - sums.begin()), sums.size() - 1);
-    const double chance = sums[walker.stratum] - (walker.stratum > 0 ? sums[walker.stratum - 1] : 0.0);
-    if (!(chance > 0)) return walker;
+    path.stratum = std::min<size_t>(static_cast<size_t>(found - sums.begin()), sums.size() - 1);
+    const double chance = sums[path.stratum] - (path.stratum > 0 ? sums[path.stratum - 1] : 0.0);
+    if (!(chance > 0)) return path;
 
-    const int side = walk.strata.side, count = side * side, stratum = static_cast<int>(walker.stratum) % count;
-    walker.light_index = static_cast<int>(walker.stratum) / count;
-    const LightSquare& square = walk.squares[static_cast<size_t>(walker.light_index)];
-    const vec2 place = (vec2(stratum % side, stratum / side) + walker.pair()) / static_cast<float>(side);
-    walker.ray = square.ray(place, walker.pair());
-    const Interval<float> inside = clip(walk.rules.reach, walker.ray.origin, walker.ray.direction, {0, infinity});
-    if (inside.empty()) return walker;
-    vec3 left = square.share(walker.ray);
-    walker.ray.origin = walker.ray.at(inside.low);
-    if (walk.endless && is_distant(*square.light))
+    const int side = tracing.strata.side, count = side * side, stratum = static_cast<int>(path.stratum) % count;
+    path.light_index = static_cast<int>(path.stratum) / count;
+    const LightSquare& square = tracing.squares[static_cast<size_t>(path.light_index)];
+    const vec2 in_square = (vec2(stratum % side, stratum / side) + path.pair()) / static_cast<float>(side);
+    path.ray = square.ray(in_square, path.pair());
+    const Interval<float> inside = clip(tracing.rules.reach, path.ray.origin, path.ray.direction, {0, infinity});
+    if (inside.empty()) return path;
+    vec3 left = square.share(path.ray);
+    path.ray.origin = path.ray.at(inside.low);
+    if (tracing.endless && is_distant(*square.light))
         left *= static_cast<float>(
-            std::exp(-optical_depth(walk.snapshot.media, {walker.ray.origin, -walker.ray.direction, infinity})));
-    walker.light = square.power * (left / static_cast<float>(chance * count * static_cast<double>(total)));
-    walker.walking = max_component(walker.light) > 0;
-    return walker;
+            std::exp(-optical_depth(tracing.snapshot.media, {path.ray.origin, -path.ray.direction, infinity})));
+    path.light = square.power * (left / static_cast<float>(chance * count * static_cast<double>(total)));
+    path.alive = max_component(path.light) > 0;
+    return path;
 }
 
-// Records the part of a flight inside rules.noted, unless its light comes straight from the source.
-void note(const Walk& walk, PathVertex& walker, float length) {
-    if (walker.order == 0 || walker.order >= walk.rules.orders) return;
-    const Interval<float> inside = clip(walk.rules.noted, walker.ray.origin, walker.ray.direction, {0, length});
+// Records the part of a segment inside rules.recorded, unless its light comes straight from the source.
+void record(const LightTracing& tracing, LightPath& path, float length) {
+    if (path.order == 0 || path.order >= tracing.rules.orders) return;
+    const Interval<float> inside = clip(tracing.rules.recorded, path.ray.origin, path.ray.direction, {0, length});
     if (inside.empty()) return;
-    const vec3 light = walker.light * walker.share;
-    walk.result.flights.push_back({walker.ray.at(inside.low), walker.ray.direction, inside.length(), light});
-    walker.flown += luminance(light) * inside.length();
+    const vec3 light = path.light * path.throughput;
+    tracing.result.segments.push_back({path.ray.at(inside.low), path.ray.direction, inside.length(), light});
+    path.recorded += luminance(light) * inside.length();
 }
 
 // Attenuation by the light's range, for light straight from it.
-float ranged(const Walk& walk, const PathVertex& walker, vec3 point) {
-    const Light& light = *walk.squares[static_cast<size_t>(walker.light_index)].light;
+float range_attenuation(const LightTracing& tracing, const LightPath& path, vec3 point) {
+    const Light& light = *tracing.squares[static_cast<size_t>(path.light_index)].light;
     return is_distant(light) ? 1 : range_window(glm::length(point - light.position), light.range);
 }
 
 // Continues the path with a new ray and a factor on its throughput, unless Russian roulette ends it.
-void turn(const Walk& walk, PathVertex& walker, Ray ray, vec3 share) {
-    walker.share *= share, walker.ray = ray;
-    ++walker.order;
-    const float left = max_component(walker.share);
-    walker.walking = walker.order < walk.rules.orders && left > 0;
-    if (!walker.walking || walker.order < certain_orders || left >= 1) return;
-    walker.walking = walker.random.next() < left;
-    walker.share /= left;
+void continue_path(const LightTracing& tracing, LightPath& path, Ray ray, vec3 share) {
+    path.throughput *= share, path.ray = ray;
+    ++path.order;
+    const float left = max_component(path.throughput);
+    path.alive = path.order < tracing.rules.orders && left > 0;
+    if (!path.alive || path.order < certain_orders || left >= 1) return;
+    path.alive = path.random.next() < left;
+    path.throughput /= left;
 }
 
-void scatter(const Walk& walk, PathVertex& walker, const Optics& optics, float distance) {
-    const vec3 point = walker.ray.at(distance);
-    const Light& light = *walk.squares[static_cast<size_t>(walker.light_index)].light;
+void scatter(const LightTracing& tracing, LightPath& path, const Optics& optics, float distance) {
+    const vec3 point = path.ray.at(distance);
+    const Light& light = *tracing.squares[static_cast<size_t>(path.light_index)].light;
     vec3 share = albedo_at(optics, point);
-    if (walker.order == 0) share *= light.volume_scale * ranged(walk, walker, point);
-    walk.result.first_scatterings += walker.order == 0;
-    (walker.order == 0 ? walk.result.scattered_once : walk.result.scattered_more) +=
-        luminance(walker.light * walker.share * share);
-    turn(walk, walker, {point, sample_phase(optics.phase, walker.ray.direction, walker.pair())}, share);
+    if (path.order == 0) share *= light.volume_scale * range_attenuation(tracing, path, point);
+    tracing.result.first_scatterings += path.order == 0;
+    (path.order == 0 ? tracing.result.scattered_once : tracing.result.scattered_more) +=
+        luminance(path.light * path.throughput * share);
+    continue_path(tracing, path, {point, sample_phase(optics.phase, path.ray.direction, path.pair())}, share);
 }
 
 // Lambertian reflection, or passage. Light from a source that the surface does not shadow is both transmitted and
 // reflected, each in half of the paths; light that is not linked to the surface is not reflected.
-void meet(const Walk& walk, PathVertex& walker, const SurfacePoint& surface, float distance) {
-    const Light& light = *walk.squares[static_cast<size_t>(walker.light_index)].light;
-    const bool lit = walker.order > 0 || is_lit(light, walk.snapshot, surface.instance);
-    const bool through = walker.order == 0 && !shadows_light(light, walk.snapshot, surface.instance);
+void hit_surface(const LightTracing& tracing, LightPath& path, const SurfacePoint& surface, float distance) {
+    const Light& light = *tracing.squares[static_cast<size_t>(path.light_index)].light;
+    const bool lit = path.order > 0 || is_lit(light, tracing.snapshot, surface.instance);
+    const bool through = path.order == 0 && !shadows_light(light, tracing.snapshot, surface.instance);
     const float reflecting = !through ? surface.alpha : lit ? 0.5f : 0.0f;
-    if (walker.random.next() >= reflecting) {
-        if (through && lit) walker.share *= 2.0f;
-        const vec3 point = walker.ray.at(distance);
-        walker.ray.origin = point + walker.ray.direction * std::max(shadow_offset(point), 4e-6f * distance);
+    if (path.random.next() >= reflecting) {
+        if (through && lit) path.throughput *= 2.0f;
+        const vec3 point = path.ray.at(distance);
+        path.ray.origin = point + path.ray.direction * std::max(shadow_offset(point), 4e-6f * distance);
         return;
     }
-    if (!lit) return void(walker.walking = false);
-    const float facing = std::abs(glm::dot(surface.face_normal, walker.ray.direction));
-    const float shaded = std::max(0.0f, -glm::dot(surface.normal, walker.ray.direction));
+    if (!lit) return void(path.alive = false);
+    const float facing = std::abs(glm::dot(surface.face_normal, path.ray.direction));
+    const float shaded = std::max(0.0f, -glm::dot(surface.normal, path.ray.direction));
     vec3 share = facing > 0 ? surface.base_color * (shaded / facing) : vec3(0);
     if (through) share *= 2 * surface.alpha;
-    if (walker.order == 0) share *= light.surface_scale * ranged(walk, walker, surface.position);
+    if (path.order == 0) share *= light.surface_scale * range_attenuation(tracing, path, surface.position);
     vec3 x, y;
     make_frame(surface.face_normal, x, y);
-    const vec2 u = walker.pair();
+    const vec2 u = path.pair();
     const float across = std::sqrt(u.x), angle = 2 * pi * u.y;
     const vec3 direction = glm::normalize(across * std::cos(angle) * x + across * std::sin(angle) * y +
                                           std::sqrt(std::max(0.0f, 1 - u.x)) * surface.face_normal);
-    turn(walk, walker, {surface.position + surface.face_normal * shadow_offset(surface.position), direction}, share);
+    continue_path(tracing, path, {surface.position + surface.face_normal * shadow_offset(surface.position), direction},
+                  share);
 }
 
-// One flight of a path, up to a collision or the surface at distance `wall`.
-void fly(const Walk& walk, PathVertex& walker, float wall, const auto& surface_at) {
-    float nearest = std::min(wall, walker.ray.t_max);
+// One segment of a path, up to a collision or the surface at distance `surface_distance`.
+void trace_segment(const LightTracing& tracing, LightPath& path, float surface_distance, const auto& surface_at) {
+    float nearest = std::min(surface_distance, path.ray.t_max);
     const Medium* hit = nullptr;
     int lookups = 0;
-    for (const Medium& medium : walk.snapshot.media) {
+    for (const Medium& medium : tracing.snapshot.media) {
         if (only_emits(medium.optics)) continue;
-        const float t =
-            collision_distance(medium, walker.ray, {0, nearest}, walker.random.next(), walker.random, lookups);
+        const float t = collision_distance(medium, path.ray, {0, nearest}, path.random.next(), path.random, lookups);
         if (t < nearest) nearest = t, hit = &medium;
     }
-    note(walk, walker, nearest);
-    if (hit) return scatter(walk, walker, hit->optics, nearest);
-    if (!(wall < walker.ray.t_max)) return void(walker.walking = false);
-    meet(walk, walker, surface_at(), nearest);
+    record(tracing, path, nearest);
+    if (hit) return scatter(tracing, path, hit->optics, nearest);
+    if (!(surface_distance < path.ray.t_max)) return void(path.alive = false);
+    hit_surface(tracing, path, surface_at(), nearest);
 }
 
-// Traces one flight for each of up to sixteen paths.
-void fly_all(const Walk& walk, std::span<PathVertex*> walkers) {
-    const Occluders* occluders = walk.snapshot.occluders.get();
-    Ray rays[walkers_at_once];
+// Traces one segment for each of up to sixteen paths.
+void trace_segments(const LightTracing& tracing, std::span<LightPath*> paths) {
+    const Occluders* occluders = tracing.snapshot.occluders.get();
+    Ray rays[paths_at_once];
     Hits hits;
-    for (size_t i = 0; i < walkers.size(); ++i) {
-        Ray& ray = walkers[i]->ray;
-        ray.t_max = clip(walk.rules.reach, ray.origin, ray.direction, {0, infinity}).high;
+    for (size_t i = 0; i < paths.size(); ++i) {
+        Ray& ray = paths[i]->ray;
+        ray.t_max = clip(tracing.rules.reach, ray.origin, ray.direction, {0, infinity}).high;
         rays[i] = ray;
     }
     hits.instance.fill(-1), hits.t.fill(infinity);
-    if (occluders && !occluders->empty()) occluders->closest({rays, walkers.size()}, 0, hits, false);
-    for (size_t i = 0; i < walkers.size(); ++i) {
-        const float wall = hits.instance[i] >= 0 ? hits.t[i] : infinity;
-        fly(walk, *walkers[i], wall, [&] { return occluders->surface(rays[i], hits, static_cast<int>(i)); });
-        if (++walkers[i]->flights == max_flights) walkers[i]->walking = false;
+    if (occluders && !occluders->empty()) occluders->closest({rays, paths.size()}, 0, hits, false);
+    for (size_t i = 0; i < paths.size(); ++i) {
+        const float surface_distance = hits.instance[i] >= 0 ? hits.t[i] : infinity;
+        trace_segment(tracing, *paths[i], surface_distance,
+                      [&] { return occluders->surface(rays[i], hits, static_cast<int>(i)); });
+        if (++paths[i]->segments == max_segments) paths[i]->alive = false;
     }
 }
 }
@@ -224,24 +226,25 @@ RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side) {
 void trace_light_paths(const Snapshot& snapshot, const RayStrata& strata, const LightPathRules& rules, int64_t first,
                        int64_t count, int64_t total, LightPathResult& result, int64_t step) {
     const std::vector<LightSquare> squares = squares_of(snapshot, rules.reach);
-    const Walk walk{snapshot, strata, rules, squares, std::ranges::any_of(snapshot.media, is_endless), result};
-    PathVertex walkers[walkers_at_once];
-    for (int64_t done = 0; done < count; done += walkers_at_once) {
-        const size_t some = static_cast<size_t>(std::min<int64_t>(walkers_at_once, count - done));
+    const LightTracing tracing{snapshot, strata, rules, squares, std::ranges::any_of(snapshot.media, is_endless),
+                               result};
+    LightPath paths[paths_at_once];
+    for (int64_t done = 0; done < count; done += paths_at_once) {
+        const size_t some = static_cast<size_t>(std::min<int64_t>(paths_at_once, count - done));
         for (size_t i = 0; i < some; ++i)
-            walkers[i] = start(walk, first + step * (done + static_cast<int64_t>(i)), total);
+            paths[i] = start(tracing, first + step * (done + static_cast<int64_t>(i)), total);
         for (;;) {
-            PathVertex* walking[walkers_at_once];
+            LightPath* alive[paths_at_once];
             size_t left = 0;
             for (size_t i = 0; i < some; ++i)
-                if (walkers[i].walking) walking[left++] = &walkers[i];
+                if (paths[i].alive) alive[left++] = &paths[i];
             if (left == 0) break;
-            fly_all(walk, {walking, left});
+            trace_segments(tracing, {alive, left});
         }
         for (size_t i = 0; i < some; ++i) {
-            result.hits += walkers[i].flown > 0;
+            result.hits += paths[i].recorded > 0;
             if (!result.of_stratum.empty())
-                result.of_stratum[walkers[i].stratum] += walkers[i].flown * walkers[i].flown;
+                result.of_stratum[paths[i].stratum] += paths[i].recorded * paths[i].recorded;
         }
     }
 }

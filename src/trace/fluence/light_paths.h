@@ -9,17 +9,17 @@ namespace tyndall {
 struct Snapshot;
 
 // A straight segment of a path after its first scattering; `light` is the power it carries.
-struct Flight {
+struct PathSegment {
     vec3 from{0}, direction{0}; // direction: unit, of travel
     float length = 0;
     vec3 light{0};
 };
 
-// Limits of paths, and which flights are recorded.
+// Limits of paths, and which segments are recorded.
 struct LightPathRules {
     Box reach;      // paths that leave it end
-    Box noted;      // flights are recorded inside
-    int orders = 2; // maximum scattering order, the next scattering of the flights included
+    Box recorded;   // segments are recorded inside
+    int orders = 2; // maximum scattering order, the next scattering of the segments included
     uint32_t seed = 0;
 };
 
@@ -37,12 +37,12 @@ bool has_lights(const Snapshot& snapshot);
 
 // Accumulated results of paths.
 struct LightPathResult {
-    std::vector<Flight> flights;     // in the order of the paths
-    int64_t first_scatterings = 0;   // in fog, of light straight from the lights
-    double scattered_once = 0;       // power scattered by fog that came straight from the lights ...
-    double scattered_more = 0;       // ... and that had been scattered before, by fog or surfaces
-    int64_t hits = 0;                // paths with recorded flights
-    std::vector<float> of_stratum{}; // per stratum: Σ over paths of (power · recorded length)²; empty = not needed
+    std::vector<PathSegment> segments; // in the order of the paths
+    int64_t first_scatterings = 0;     // in fog, of light straight from the lights
+    double scattered_once = 0;         // power scattered by fog that came straight from the lights ...
+    double scattered_more = 0;         // ... and that had been scattered before, by fog or surfaces
+    int64_t hits = 0;                  // paths with recorded segments
+    std::vector<float> of_stratum{};   // per stratum: Σ over paths of (power · recorded length)²; empty = not needed
 };
 
 // Traces `count` of `total` paths: `first`, `first + step` and so on. All paths are stratified together, and each has

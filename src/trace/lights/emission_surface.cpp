@@ -67,7 +67,7 @@ void add_fire(const EmissiveBricks& fire, const Snapshot& snapshot, std::span<co
         for (size_t field = 0; field < fire.fields.size(); ++field) {
             const EmissionOnLine hit = emission_on_line(fire, field, {points[i].position, direction, infinity}, along);
             if (hit.inverse_density > 0)
-                set_place(points[i], hit.place, hit.inverse_density * hit.place.line_density, i, on_lines[field]);
+                set_place(points[i], hit.sample, hit.inverse_density * hit.sample.line_density, i, on_lines[field]);
         }
     }
     add_visible(snapshot, points, picked, scale, radiance);

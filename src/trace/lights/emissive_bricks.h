@@ -40,7 +40,7 @@ EmissionSample emission_sample_at(const EmissiveBricks& fire, size_t field, vec3
 
 // A point on a line 0..t_max, sampled in proportion to the maximum brightness of each cell along it.
 struct EmissionOnLine {
-    EmissionSample place;
+    EmissionSample sample;
     float distance = 0, inverse_density = 0; // meters; inverse_density: 0 = nothing was found
 };
 EmissionOnLine emission_on_line(const EmissiveBricks& fire, size_t field, const Ray& line, float u);

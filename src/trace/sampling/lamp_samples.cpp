@@ -104,18 +104,18 @@ bool beside_lamp(const View& view, vec2 center) {
     });
 }
 
-SamplePoint lamp_sample(const View& view, vec2 center, SampleIndex place) {
+SamplePoint lamp_sample(const View& view, vec2 center, SampleIndex sample) {
     const float radius = view.filter_radius;
     const Beams seen = beams_in(view, center);
     const float filter_share = seen.count ? 0.5f : 1.0f;
-    const uint32_t lamp_sequence = hash(place.sequence, use_lamp);
+    const uint32_t lamp_sequence = hash(sample.sequence, use_lamp);
     std::array<vec2, candidates> points;
     std::array<float, candidates> sums;
     float sum = 0;
     for (uint32_t k = 0; k < candidates; ++k) {
         const bool of_lamp = seen.count && k % 2;
-        const uint32_t index = place.index * candidates + k;
-        const Sample2 u = sample2(seen.count ? index / 2 : index, of_lamp ? lamp_sequence : place.sequence);
+        const uint32_t index = sample.index * candidates + k;
+        const Sample2 u = sample2(seen.count ? index / 2 : index, of_lamp ? lamp_sequence : sample.sequence);
         points[k] = of_lamp ? seen.beams[k / 2 % seen.count].point({u.x, u.y})
                             : center + radius * filter_point(view.filter, {u.x, u.y});
 
@@ -126,7 +126,7 @@ SamplePoint lamp_sample(const View& view, vec2 center, SampleIndex place) {
             density += (1 - filter_share) / static_cast<float>(seen.count) * seen.beams[b].density(points[k]);
         sums[k] = sum += wanted > 0 ? wanted * glow(view, points[k]) / density : 0;
     }
-    const float wanted = sum * to_unit(hash(place.sequence, place.index, use_choice));
+    const float wanted = sum * to_unit(hash(sample.sequence, sample.index, use_choice));
     const size_t chosen = std::min<size_t>(std::ranges::upper_bound(sums, wanted) - sums.begin(), candidates - 1);
     return {points[chosen], sum / (candidates * glow(view, points[chosen]))};
 }

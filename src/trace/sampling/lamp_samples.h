@@ -15,5 +15,5 @@ bool beside_lamp(const View& view, vec2 center);
 
 // A sample distributed as the filter times the glow, with the weight that keeps it unbiased: resampled from candidates
 // of the filter and of the lamps (resampled importance sampling: Talbot, Cline & Egbert 2005).
-SamplePoint lamp_sample(const View& view, vec2 center, SampleIndex place);
+SamplePoint lamp_sample(const View& view, vec2 center, SampleIndex sample);
 }

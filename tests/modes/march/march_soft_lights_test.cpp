@@ -23,10 +23,10 @@ dvec3 mean_over_samples(const Snapshot& snapshot, const Settings& settings, cons
     for (uint32_t first = 0; first < samples; first += 16) {
         const std::vector<Ray> rays(16, ray);
         uint32_t ids[16];
-        SampleIndex places[16];
+        SampleIndex sample_indices[16];
         Scatter results[16];
-        for (uint32_t i = 0; i < 16; ++i) ids[i] = hash(first + i, 4u), places[i] = {77, first + i};
-        scatter({.rays = rays, .ids = ids, .places = places}, results);
+        for (uint32_t i = 0; i < 16; ++i) ids[i] = hash(first + i, 4u), sample_indices[i] = {77, first + i};
+        scatter({.rays = rays, .ids = ids, .sample_indices = sample_indices}, results);
         for (const Scatter& result : results) sum += dvec3(result.radiance);
     }
     return sum / double(samples);

@@ -57,12 +57,12 @@ TEST(GoingOn, TakesThePlacesThatTheEarlierPictureLeft) {
         std::set<std::pair<uint32_t, uint32_t>> parts, together;
         for (const View* view : {&first, &second})
             for (int sample = 0; sample < samples_of(*view, pixel); ++sample) {
-                const SampleIndex place = sample_index(*view, pixel, sample);
-                EXPECT_TRUE(parts.insert({place.sequence, place.index}).second) << "taken twice";
+                const SampleIndex point = sample_index(*view, pixel, sample);
+                EXPECT_TRUE(parts.insert({point.sequence, point.index}).second) << "taken twice";
             }
         for (int sample = 0; sample < samples_of(whole, pixel); ++sample) {
-            const SampleIndex place = sample_index(whole, pixel, sample);
-            together.insert({place.sequence, place.index});
+            const SampleIndex point = sample_index(whole, pixel, sample);
+            together.insert({point.sequence, point.index});
         }
         EXPECT_EQ(parts, together) << pixel.x << " " << pixel.y;
     }

@@ -59,7 +59,7 @@ Mode as_right() {
             std::vector<uint32_t> ids(batch.ids.begin(), batch.ids.end());
             for (uint32_t& id : ids) id = hash(id, 1u);
             RayBatch other = batch;
-            other.ids = ids, other.jitter = {}, other.places = {};
+            other.ids = ids, other.jitter = {}, other.sample_indices = {};
             right(other, results);
         });
     };

@@ -21,7 +21,7 @@ ScatterFunction prepare_jitter(const View&, const Snapshot&, const Settings&, Hi
 ScatterFunction prepare_place(const View&, const Snapshot&, const Settings&, History*) {
     return [](const RayBatch& batch, std::span<Scatter> results) {
         for (size_t i = 0; i < results.size(); ++i)
-            results[i] = {vec3(sample2(batch.places[i].index, batch.places[i].sequence).x), 1, 1, 1};
+            results[i] = {vec3(sample2(batch.sample_indices[i].index, batch.sample_indices[i].sequence).x), 1, 1, 1};
     };
 }
 
