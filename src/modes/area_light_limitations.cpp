@@ -136,12 +136,11 @@ void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations
 
 namespace {
 // Fraction of the image's height that a sphere covers; 0 where none of it is in the image.
-double share_of_picture(const View& view, vec3 center, double radius) {
+double share_of_height(const View& view, vec3 center, double radius) {
     const Camera& camera = view.camera;
-    const double depth = glm::dot(center - camera.position, camera.forward);
+    const float depth = glm::dot(center - camera.position, camera.forward);
     if (glm::distance(center, camera.position) < radius) return 1;
-    const double height =
-        camera.ortho_height > 0 ? camera.ortho_height : 2 * depth * std::tan(0.5 * camera.vertical_fov);
+    const double height = view_height(camera, depth);
     const std::optional<vec2> at = pixel_of(camera, view.size, center);
     if (!at || !(height > 0)) return 0;
     const vec2 beyond = glm::max(glm::max(-*at, *at - vec2(view.size)), vec2(0));
@@ -166,7 +165,7 @@ bool ends_within(const Snapshot& snapshot, vec3 center, double distance) {
 // where that sphere covers much of the image's height.
 Severity severity_within(const View& view, const Snapshot& snapshot, vec3 lamp, double distance) {
     constexpr double much = 0.2;
-    const bool wrong = share_of_picture(view, lamp, distance) > much || ends_within(snapshot, lamp, distance);
+    const bool wrong = share_of_height(view, lamp, distance) > much || ends_within(snapshot, lamp, distance);
     return wrong ? Severity::wrong : Severity::degraded;
 }
 }

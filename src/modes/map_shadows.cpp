@@ -20,9 +20,7 @@ void add_texels(const View& view, const ShadowMap& map, const Light& light, std:
     for (const Ray& ray : rays) {
         const vec3 end = ray.at(ray.t_max);
         const float texel = texel_size(map, end), depth = planar_depth(view.camera, ray, ray.t_max);
-        const float height = view.camera.ortho_height > 0
-                                 ? view.camera.ortho_height
-                                 : 2 * std::max(depth, 1e-6f) * std::tan(0.5f * view.camera.vertical_fov);
+        const float height = view_height(view.camera, std::max(depth, 1e-6f));
         largest = std::max(largest, texel);
         pixels = std::max(pixels, texel * static_cast<float>(view.size.y) / height);
     }

@@ -36,9 +36,7 @@ void add_float_precision(const View& view, const Snapshot& snapshot, Limitations
     if (snapshot.bounds.empty()) return;
     const float offset = shadow_offset(camera.position);
     const float depth = std::max(glm::dot(snapshot.bounds.center() - camera.position, camera.forward), camera.near);
-    const float height =
-        camera.ortho_height > 0 ? camera.ortho_height : 2 * depth * std::tan(0.5f * camera.vertical_fov);
-    if (offset < seen_offset * height / static_cast<float>(view.size.y)) return;
+    if (offset < seen_offset * view_height(camera, depth) / static_cast<float>(view.size.y)) return;
     limitations.push_back({Severity::degraded, &limitation::float_precision, Subject::scene, "", {offset}});
 }
 

@@ -35,6 +35,11 @@ Ray camera_ray(const Camera& camera, ivec2 size, vec2 pixel);
 // the camera.
 std::optional<vec2> pixel_of(const Camera& camera, ivec2 size, vec3 point);
 
+// Height of the view at a distance along the viewing direction, meters.
+inline float view_height(const Camera& camera, float depth = 1) {
+    return camera.ortho_height > 0 ? camera.ortho_height : 2 * depth * std::tan(0.5f * camera.vertical_fov);
+}
+
 // Distance along the viewing direction (planar z) of a point on a ray of this camera.
 inline float planar_depth(const Camera& camera, const Ray& ray, float t) {
     return glm::dot(ray.at(t) - camera.position, camera.forward);

@@ -37,7 +37,7 @@ Ray lens_ray(const Camera& camera, ivec2 size, vec2 pixel, vec2 on_aperture) {
 }
 
 float blur_diameter(const Camera& camera, ivec2 size, float depth) {
-    const float pixels = static_cast<float>(size.y) / (2 * std::tan(0.5f * camera.vertical_fov)); // at unit depth
+    const float pixels = static_cast<float>(size.y) / view_height(camera); // at unit depth
     return 2 * camera.lens.radius * std::abs(1 / depth - 1 / camera.lens.focus) * pixels;
 }
 

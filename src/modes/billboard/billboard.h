@@ -65,7 +65,7 @@ struct Billboards {
     std::vector<CardGroup> groups; // of the quads
     std::vector<float> veils;      // per light: factor on the unshadowed haze of a sun in the open
     Camera camera;
-    float pixel = 0; // width of a pixel at a distance of 1 m
+    float pixel = 0; // meters: width of a pixel, at a distance of 1 m in perspective
     float seconds = 0;
 };
 

@@ -98,7 +98,8 @@ HWY_INLINE Floats specks(const Billboards& billboards, const CardQuad& quad, con
     const Ints i = truncate(fx), j = truncate(fy);
     const Floats dx = (x - fx) - lerp(0.3f, 0.7f, random16(i, j, seed));
     const Floats dy = (y - fy) - lerp(0.3f, 0.7f, random16(i, j, seed + 1));
-    const Floats pixel = (hit.t + packet.before) * (0.9f * billboards.pixel);
+    const Floats away = billboards.camera.ortho_height > 0 ? Floats(1.0f) : hit.t + packet.before;
+    const Floats pixel = away * (0.9f * billboards.pixel);
     const Floats size = min(max(pixel, radius) * (1 / cell), 0.3f);
     const Floats dim = min(radius * radius / max(pixel * pixel, 1e-12f), 1.0f); // for dots enlarged to a pixel
     const Floats off = fma(dx, dx, dy * dy) / (size * size);

@@ -105,8 +105,7 @@ Billboards make_billboards(const View& view, const Snapshot& snapshot, const Set
     billboards.snapshot.media = homogeneous_media(billboards.snapshot.media);
     billboards.camera = view.camera;
     billboards.seconds = static_cast<float>(snapshot.seconds);
-    const float height = view.camera.ortho_height > 0 ? 0 : 2 * std::tan(0.5f * view.camera.vertical_fov);
-    billboards.pixel = height / static_cast<float>(std::max(view.size.y, 1));
+    billboards.pixel = view_height(view.camera) / static_cast<float>(std::max(view.size.y, 1));
     for (size_t i = 0; i < cards.size(); ++i) {
         const BeamCard& card = cards[i];
         // Each card's brightness sways with its own frequency and phase.

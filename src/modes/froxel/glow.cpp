@@ -9,8 +9,7 @@ float glow_angle(const Phase& phase) { return 0.77f * (1 - narrowest_g(phase)); 
 
 float tile_angle(const View& view, int tile) {
     if (view.camera.ortho_height > 0 || tile == 1) return 0;
-    const float pixel = 2 * std::tan(0.5f * view.camera.vertical_fov) / static_cast<float>(view.size.y);
-    return pixel * static_cast<float>(tile);
+    return view_height(view.camera) / static_cast<float>(view.size.y) * static_cast<float>(tile);
 }
 
 bool shows_sun(const View& view, const Snapshot& snapshot, const Light& light) {

@@ -8,7 +8,7 @@ FroxelGrid make_froxel_grid(const Camera& camera, ivec2 image_size, int tile) {
 
     // As in camera_ray(), a pixel's position on the plane at unit depth is linear in the pixel.
     const vec2 extent(image_size);
-    const float height = camera.ortho_height > 0 ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov);
+    const float height = view_height(camera);
     const vec3 x = camera.right * (height / extent.y), y = -camera.up * (height / extent.y);
     const vec3 corner = -0.5f * (extent.x * x + extent.y * y);
     grid.origin = camera.position, grid.step = camera.forward;
@@ -53,9 +53,7 @@ vec3 project(const FroxelGrid& grid, vec3 point) {
     const Camera& camera = grid.camera;
     const vec3 offset = point - camera.position;
     const float z = glm::dot(offset, camera.forward);
-    const bool ortho = camera.ortho_height > 0;
-    const float height = ortho ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov) * z;
-    const float per_meter = static_cast<float>(grid.image_size.y) / height;
+    const float per_meter = static_cast<float>(grid.image_size.y) / view_height(camera, z);
     const vec2 across(glm::dot(offset, camera.right), -glm::dot(offset, camera.up));
     return vec3(across * per_meter + 0.5f * vec2(grid.image_size), z);
 }

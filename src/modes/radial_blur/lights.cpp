@@ -51,9 +51,7 @@ vec3 lamp_brightness(const Snapshot& snapshot, const Light& light, const Ray& to
 }
 
 float pixels_per_meter(const View& view, float depth) {
-    const bool flat = view.camera.ortho_height > 0;
-    const float height = flat ? view.camera.ortho_height : 2 * depth * std::tan(0.5f * view.camera.vertical_fov);
-    return static_cast<float>(view.size.y) / height;
+    return static_cast<float>(view.size.y) / view_height(view.camera, depth);
 }
 }
 

@@ -21,8 +21,7 @@ Imath::M44f world_to_camera(const Camera& camera) {
 
 // Width and height of the image: at distance 1 (perspective) or everywhere (orthographic).
 vec2 screen_window(const Camera& camera, ivec2 display) {
-    const bool orthographic = camera.ortho_height > 0;
-    const float height = orthographic ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov);
+    const float height = view_height(camera);
     return {height * static_cast<float>(display.x) / static_cast<float>(display.y), height};
 }
 

@@ -96,11 +96,10 @@ LightDepthFroxels fitted_froxels(const View& view, const Box& bounds, int resolu
     froxels.first = 2 / (1 + growth);
 
     // Square cells, `resolution` along the longer side, and one more beyond each edge.
-    const vec2 picture(view.size);
-    const float pixels = std::max(picture.x, picture.y) / static_cast<float>(resolution);
-    const ivec2 cells = glm::max(ivec2(glm::ceil(picture / pixels - 1e-3f)), ivec2(1));
-    const float height = ortho ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov);
-    froxels.scale = vec2(picture.y / (pixels * height));
+    const vec2 image(view.size);
+    const float pixels = std::max(image.x, image.y) / static_cast<float>(resolution);
+    const ivec2 cells = glm::max(ivec2(glm::ceil(image / pixels - 1e-3f)), ivec2(1));
+    froxels.scale = vec2(image.y / (pixels * view_height(camera)));
     froxels.offset = 0.5f * vec2(cells) + 1.0f;
     froxels.size = ivec3(cells + 3, resolution + 1);
     return froxels;

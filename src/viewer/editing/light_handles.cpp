@@ -77,9 +77,8 @@ std::optional<size_t> pick_light(const Camera& camera, ivec2 size, vec2 pixel, c
 }
 
 float pixel_size(const Camera& camera, ivec2 size, vec3 point) {
-    const float rows = static_cast<float>(size.y);
-    if (camera.ortho_height > 0) return camera.ortho_height / rows;
-    return 2 * glm::dot(point - camera.position, camera.forward) * std::tan(0.5f * camera.vertical_fov) / rows;
+    const float depth = glm::dot(point - camera.position, camera.forward);
+    return view_height(camera, depth) / static_cast<float>(size.y);
 }
 
 std::vector<HandlePoint> light_handles(const Camera& camera, ivec2 size, const LightIcon& icon, const Scene& scene,

@@ -23,12 +23,6 @@ Camera rotated(Camera camera, vec2 angle) {
     camera.up = glm::cross(camera.right, camera.forward);
     return camera;
 }
-
-// Height of the view at the target, meters.
-float picture_height(const Viewpoint& view) {
-    if (view.camera.ortho_height > 0) return view.camera.ortho_height;
-    return 2 * view.distance * std::tan(0.5f * view.camera.vertical_fov);
-}
 }
 
 Viewpoint viewpoint_of(const Scene& scene, int camera, double seconds) {
@@ -58,7 +52,7 @@ Viewpoint turned(Viewpoint from, vec2 angle) {
 }
 
 Viewpoint panned(Viewpoint from, vec2 heights) {
-    const vec2 meters = heights * picture_height(from);
+    const vec2 meters = heights * view_height(from.camera, from.distance); // at the target
     from.camera.position -= meters.x * from.camera.right + meters.y * from.camera.up;
     return from;
 }

@@ -18,7 +18,6 @@
 
 namespace tyndall::test {
 namespace {
-// A parallelogram: corner, and the two edges from it.
 // A wall at x = 0 with a hole |y - 2|, |z| < 0.5, floor and ceiling, and fog behind the wall; a sun shines through the
 // hole at 45 degrees and lands on the floor about x = 2.
 struct HoleInWall {
@@ -91,6 +90,26 @@ TEST(Billboard, IsAboutAsBrightAsTheLightInTheFog) {
     const double drawn = mean_of(run_mode("billboard", view, hole.snapshot, {}, rays));
     EXPECT_GT(drawn, 0.2 * truth);
     EXPECT_LT(drawn, 2 * truth);
+}
+
+// Dots of dust are much smaller than a pixel here, and are enlarged to one.
+TEST(Billboard, DustOfAnOrthographicViewIsThatOfAViewFromFarAway) {
+    const HoleInWall hole;
+    constexpr float height = 2, distance = 1000;
+    View view = view_of({1, 1, distance}, {1, 1, 0}, {90, 90}, 2 * std::atan(0.5f * height / distance));
+    const auto dust = [&] {
+        const std::vector<Ray> rays = pixel_rays(view, hole.snapshot, 2 * distance);
+        Settings none;
+        none.of<BillboardSettings>().specks = 0;
+        std::vector<Scatter> with = run_mode("billboard", view, hole.snapshot, {}, rays);
+        const std::vector<Scatter> without = run_mode("billboard", view, hole.snapshot, none, rays);
+        for (size_t i = 0; i < with.size(); ++i) with[i].radiance -= without[i].radiance;
+        return with;
+    };
+    const std::vector<Scatter> far = dust();
+    view.camera.ortho_height = height;
+    EXPECT_GT(mean_of(far), 0);
+    EXPECT_LT(relative_rmse(dust(), far), 0.1);
 }
 
 TEST(Billboard, DoesNotPopOnAnOrbit) {

@@ -35,8 +35,7 @@ HWY_INLINE Vec3s projected(const FroxelGrid& grid, const Vec3s& point) {
     const Vec3s offset = point - splat(camera.position);
     const Floats z = dot(offset, splat(camera.forward));
     const bool ortho = camera.ortho_height > 0;
-    const float height = ortho ? camera.ortho_height : 2 * std::tan(0.5f * camera.vertical_fov);
-    const float scale = static_cast<float>(grid.image_size.y) / height;
+    const float scale = static_cast<float>(grid.image_size.y) / view_height(camera);
     const Floats per_meter = ortho ? Floats(scale) : Floats(scale) / select(z > 0.0f, z, 1.0f);
     return {fma(dot(offset, splat(camera.right)), per_meter, 0.5f * static_cast<float>(grid.image_size.x)),
             fma(-dot(offset, splat(camera.up)), per_meter, 0.5f * static_cast<float>(grid.image_size.y)), z};
