@@ -28,6 +28,17 @@ float Medium::majorant() const {
     return gray_extinction(optics) * (density.kind == DensityKind::bricks ? density.bricks->highest : 1.0f);
 }
 
+float fog_detail(std::span<const Medium> media) {
+    constexpr float voxels = 4; // that a noise's last octave spans
+    float detail = infinity;
+    for (const Medium& medium : media) {
+        if (medium.density.kind != DensityKind::bricks) continue;
+        const vec3 voxel = medium.density.bricks->voxel_size;
+        detail = std::min(detail, voxels * std::min(voxel.x, std::min(voxel.y, voxel.z)));
+    }
+    return detail;
+}
+
 vec3 albedo_at(const Optics& optics, vec3 point) {
     return optics.albedo_field ? optics.base_albedo * albedo_factor(*optics.albedo_field, point) : optics.albedo;
 }

@@ -71,6 +71,9 @@ struct Medium {
     float majorant() const;
 };
 
+// Size of the finest detail of the brick media, meters: a noise's last octave spans several voxels.
+float fog_detail(std::span<const Medium> media);
+
 // Density at a point; 0 outside the medium.
 float density_at(const Medium& medium, vec3 point);
 

@@ -26,9 +26,6 @@ struct ShadowMapMarch {
     bool narrow_lobe = false;       // the fog's phase function has a narrow lobe
 };
 
-// Size of the finest detail of the brick media, meters: a noise's last octave spans several voxels.
-float fog_detail(std::span<const Medium> media);
-
 inline constexpr int min_uneven_steps = 8; // fewer steps are equal
 
 // Boundaries of `count` steps along a ray from its first to its last fog: t[0], t[stride], ..., t[count·stride]. If the

@@ -17,20 +17,6 @@
 #include "volume/medium.h"
 
 namespace tyndall {
-namespace {
-constexpr float detail_voxels = 4; // size of a noise's finest detail
-}
-
-float fog_detail(std::span<const Medium> media) {
-    float detail = infinity;
-    for (const Medium& medium : media) {
-        if (medium.density.kind != DensityKind::bricks) continue;
-        const vec3 voxel = medium.density.bricks->voxel_size;
-        detail = std::min(detail, detail_voxels * std::min(voxel.x, std::min(voxel.y, voxel.z)));
-    }
-    return detail;
-}
-
 ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, const Settings& settings,
                                    History* history) {
     auto march = std::make_shared<ShadowMapMarch>();

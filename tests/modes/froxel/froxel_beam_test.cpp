@@ -214,6 +214,17 @@ TEST(FroxelBeam, FogNextToALampIsThatOfTheReference) {
     EXPECT_LT(relative_rmse(scattered(froxels(view, stage.snapshot, {}), rays), truth), 0.1);
 }
 
+// Waves of fog shorter than a slice, in front of the lamp and around it.
+TEST(FroxelBeam, FogFinerThanASliceIsSampledInStepsNearALamp) {
+    const Medium waves = medium_of(unit_volume(48, [](vec3 p) { return 0.5f + 0.5f * std::sin(25 * p.z); }), 2);
+    const TestScene stage = make_scene({waves}, {point_light({0.1f, 0.2f, 0.1f}, 5)}, {}, vec3(0));
+    const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
+    const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
+    EXPECT_LT(relative_rmse(scattered(froxels(view, stage.snapshot, with({"froxel.depth_slices=10"})), rays), truth),
+              0.2);
+}
+
 TEST(FroxelBeam, ARayDoesNotKnowItsNeighborsNorTheThreads) {
     const TestScene stage = beam_behind_slab();
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0});

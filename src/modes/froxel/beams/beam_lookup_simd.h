@@ -1,5 +1,4 @@
-// Light of a beam along 16 camera rays: its strength is evaluated along the rays, its attenuation comes from froxels
-// (see base/simd/simd.h for how such files are compiled).
+// Light of a beam along 16 camera rays, slice by slice (see base/simd/simd.h for how such files are compiled).
 #if defined(TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H
 #undef TYNDALL_MODES_FROXEL_BEAMS_BEAM_LOOKUP_SIMD_H
@@ -8,9 +7,7 @@
 #endif
 
 #include "base/simd/reduce_simd.h"
-#include "integrate/scattering_simd.h"
-#include "modes/froxel/beams/closed_beam_simd.h"
-#include "trace/transmittance/light_grid_simd.h"
+#include "modes/froxel/beams/beam_step_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
@@ -33,142 +30,14 @@ RaysReach reach_of(const FroxelBeams& beams, size_t beam, const Ints& own) {
     return {load(first), load(end), all};
 }
 
-// Interpolates a per-tile value between the tiles around the rays.
-template<class Value> HWY_INLINE Floats between_tiles(const FroxelTaps& taps, const Value& value_of) {
-    Floats sum = 0.0f;
-    for (int t = 0; t < taps.count; ++t) {
-        const Floats weight = load(taps.weights[t]);
-        if (taps.together) {
-            sum = fma(weight, value_of(static_cast<size_t>(taps.tiles[t][0])), sum);
-            continue;
-        }
-        alignas(64) float values[16];
-        for (size_t i = 0; i < 16; ++i) values[i] = value_of(static_cast<size_t>(taps.tiles[t][i]));
-        sum = fma(weight, load(values), sum);
-    }
-    return sum;
-}
-
-// One slice, interpolated between the froxels around the rays.
-struct BeamSlice {
-    Floats before, across; // optical depth for a slant of 1, up to the slice and in it
-    Floats extinction;     // 1/m
-    Floats share;          // fraction of the beam's light that arrives
-};
-
-// Blends from the froxels' value, for rays that pass the lamp far away, to the ray's own, for rays close to it.
-HWY_INLINE Floats nearer(const BeamWalk& walk, const Floats& of_froxels, const Floats& own) {
-    return select(walk.close < 1.0f, of_froxels + (own - of_froxels) * walk.close, own);
-}
-
-// Extinction of a medium in the froxels of a slice around the rays.
-HWY_INLINE Floats mean_extinction(const BeamWalk& walk, const BeamSlice& here, size_t medium, int slice) {
-    const FroxelBeams& beams = walk.froxels.beams;
-    if (beams.media == 0) return here.extinction;
-    return here.extinction * between_tiles(walk.taps, [&](size_t tile) {
-               return beams.media_shares[beams.media_index(walk.froxels.grid, tile, medium, slice)];
-           });
-}
-
-// Extinction of a medium at points of the rays; grids are sampled only for rays close to the lamp.
-HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamSlice& here, size_t medium, int slice,
-                                const Vec3s& point) {
-    const Medium& of = walk.froxels.scene->snapshot.media[medium];
-    const bool grid = of.density.kind == DensityKind::bricks;
-    if (grid && !any(walk.close > 0.0f)) return mean_extinction(walk, here, medium, slice);
-    const Floats exact = density16(of, point) * gray_extinction(of.optics);
-    if (!grid || !any(walk.close < 1.0f)) return exact;
-    const Floats mean = mean_extinction(walk, here, medium, slice);
-    return nearer(walk, mean, exact);
-}
-
-// Fraction of a beam's light that grid fog and the style's fade let through to points of the rays, for rays close to
-// the lamp.
-HWY_INLINE Floats exact_share(const BeamWalk& walk, const Vec3s& point, const Mask16& wanted) {
-    const FroxelScene& scene = *walk.froxels.scene;
-    const auto& columns = scene.columns[walk.froxels.beams.lights[walk.beam]];
-    if (columns) fill_around(*columns, point, wanted);
-    return exp(-light_depth16(walk.froxels.beams.grids[walk.beam], point, wanted)) *
-           style_fade(scene.style, walk.froxels.grid.camera, point);
-}
-
-// Mean of e^-x over a segment of optical depth d, relative to its value at the middle: sinh(d/2) / (d/2), as a series.
-HWY_INLINE Floats mean_over(const Floats& depth) {
-    const Floats square = depth * depth;
-    return fma(square, fma(square, 1.0f / 1920, 1.0f / 24), 1.0f);
-}
-
-// Light of a beam on a segment of the rays inside a slice: two Gauss points in each of several equal angles seen from
-// the lamp, in which dt/r² is constant. Their number is proportional to the segment's part of the beam's whole angle; a
-// small angle has a single point at its middle.
-Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, int slice, const BeamSlice& here,
-                   const Mask16& wanted) {
-    constexpr float gauss = 0.2113248654f; // (1 - 1/√3) / 2
-    const float pieces = walk.light.filter ? filter_pieces : 6;
-    const FroxelGrid& grid = walk.froxels.grid;
-    const float low = grid.faces[static_cast<size_t>(slice)],
-                thickness = grid.faces[static_cast<size_t>(slice) + 1] - low;
-    const Mask16 close = wanted & (walk.close > 0.0f);
-    const bool exact = walk.froxels.beams.exact_shadows[walk.beam] && any(close);
-    const Mask16 single = (angles.angle < walk.whole * (0.25f / pieces)) & (angles.angle < 0.2f);
-    const Floats cut = min(floor(angles.angle / walk.whole * pieces), pieces - 1) + 1.0f, share = 1.0f / cut;
-    // Grid fog attenuates light to each point as to the middle of the slice, corrected for the fog in between.
-    const float dims = dimming(walk.froxels.scene->depths[walk.froxels.beams.lights[walk.beam]]);
-    const FroxelBeams::LampFog& fog = walk.froxels.beams.fog[walk.beam];
-    Floats grids = 0.0f; // extinction of grid fog
-    for (size_t m = 0; m < walk.froxels.scene->snapshot.media.size(); ++m)
-        if (walk.froxels.scene->snapshot.media[m].density.kind == DensityKind::bricks)
-            grids = grids + mean_extinction(walk, here, m, slice);
-    const auto to_lamp = [&](const Floats& distance)
-                             HWY_ATTR { return grids * distance * dims - depth_at_lamp(fog, distance); };
-    const Floats middle = (Floats(low + 0.5f * thickness) - walk.taps.start) * walk.taps.slant - walk.by_lamp.nearest;
-    const Floats to_middle = sqrt(fma(middle, middle, walk.by_lamp.height2));
-    const Floats points = select(single, 1.0f, cut * 2.0f), weight = select(single, 1.0f, share * 0.5f);
-    Vec3s sum = splat(vec3(0));
-    for (int i = 0; i < 2 * static_cast<int>(pieces); ++i) {
-        const Mask16 here_too = wanted & (Floats(static_cast<float>(i)) < points);
-        if (!any(here_too)) break;
-        const float piece = static_cast<float>(i / 2) + (i % 2 ? 1 - gauss : gauss);
-        const Floats slope = angles.slope(select(single, 0.5f, share * piece)), u = slope * angles.height;
-        const Floats distance = sqrt(fma(u, u, walk.by_lamp.height2));
-        const Floats z = (u + walk.by_lamp.nearest) / walk.taps.slant + walk.taps.start;
-        const Floats place = max(min((z - low) * (1 / thickness), 1.0f), 0.0f);
-        const Vec3s point = fma(walk.rays.direction, u + walk.by_lamp.nearest, walk.rays.origin);
-        const Floats depth = fma(here.across, place, here.before) * walk.taps.slant - walk.depth_before;
-        const Floats length = angles.length(weight, slope);
-        const Floats dimmed =
-            max(depth, 0.0f) * walk.froxels.view_depth + closed_depth_to_lamp(walk, point, distance) * dims;
-        Floats passed = here.share * exp(to_lamp(to_middle) - to_lamp(distance) - depth_at_lamp(fog, distance));
-        if (exact) passed = nearer(walk, passed, exact_share(walk, point, close & here_too));
-        const Floats change = here.extinction * length * (walk.froxels.view_depth + u / max(distance, 1e-20f) * dims);
-        const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
-                              near_share(walk.near, distance) * length * passed * exp(-dimmed) * mean_over(change);
-        Vec3s towards = scattering(walk.froxels.scene->snapshot.media, point, -u / max(distance, 1e-20f),
-                                   [&](size_t m) HWY_ATTR { return extinction_at(walk, here, m, slice, point); });
-        if (walk.light.filter) towards = walk.filtered(towards, point, distance);
-        sum = fma(towards, zero_unless(here_too, amount), sum);
-    }
-    return sum;
-}
-
-// The same, split at the light's kinks and for narrow phase lobes.
-Vec3s light_between_kinks(const BeamWalk& walk, const Interval<Floats>& part, int slice, const BeamSlice& here,
-                          const Mask16& wanted) {
-    return between_kinks(walk, part, wanted, [&](const Interval<Floats>& one, const Mask16& some) HWY_ATTR {
-        return between_cuts(walk, one, some, [&](const Interval<Floats>& piece, const Mask16& left) HWY_ATTR {
-            return light_within(walk, EquiAngular16(piece, walk.by_lamp.away), slice, here, left);
-        });
-    });
-}
-
-// Optical depths from the rays' starts to the slice faces [face · 16 + ray], computed on demand with one density sample
-// at the middle of each slice.
+// Optical depths from the rays' starts to the steps' faces [face · 16 + ray], computed on demand with one density
+// sample at the middle of each step.
 struct RayDepths {
     std::vector<float> depths;
 };
 Floats own_depth_to(const BeamWalk& walk, int face, RayDepths& known) {
-    const FroxelGrid& grid = walk.froxels.grid;
-    const auto length_to = [&](size_t k) HWY_ATTR { return max(Floats(grid.faces[k]) - walk.taps.start, 0.0f); };
+    const std::vector<float>& faces = walk.froxels.beams.step_faces;
+    const auto length_to = [&](size_t k) HWY_ATTR { return max(Floats(faces[k]) - walk.taps.start, 0.0f); };
     if (known.depths.empty()) known.depths.assign(16, 0.0f);
     for (size_t k = known.depths.size() / 16; k <= static_cast<size_t>(face); ++k) {
         const Floats low = length_to(k - 1) * walk.taps.slant, high = length_to(k) * walk.taps.slant;
@@ -182,11 +51,17 @@ Floats own_depth_to(const BeamWalk& walk, int face, RayDepths& known) {
     return load(&known.depths[16 * static_cast<size_t>(face)]);
 }
 
-// Optical depth up to a slice face, for a slant of 1.
-HWY_INLINE Floats depth_to(const BeamWalk& walk, int face, RayDepths& known) {
-    const Floats mean =
-        between_tiles(walk.taps, [&](size_t tile) { return walk.froxels.sums.at(walk.froxels.grid, tile, face)[3]; });
+// Optical depth up to the face before a slice's step `step` of `steps`, for a slant of 1.
+HWY_INLINE Floats depth_to(const BeamWalk& walk, int slice, int step, int steps, RayDepths& known) {
+    const auto mean_at = [&](int face) HWY_ATTR {
+        return between_tiles(walk.taps,
+                             [&](size_t tile) { return walk.froxels.sums.at(walk.froxels.grid, tile, face)[3]; });
+    };
+    const float share = static_cast<float>(step) / static_cast<float>(steps);
+    Floats mean = mean_at(step < steps ? slice : slice + 1);
     if (!any(walk.close > 0.0f)) return mean;
+    if (0 < step && step < steps) mean = lerp(mean, mean_at(slice + 1), share);
+    const int face = walk.froxels.beams.first_step[static_cast<size_t>(slice)] + step;
     const Floats own = (own_depth_to(walk, face, known) + walk.depth_before) / walk.taps.slant;
     return nearer(walk, mean, own);
 }
@@ -196,19 +71,6 @@ HWY_INLINE Floats depth_to(const BeamWalk& walk, int face, RayDepths& known) {
 Floats proximity(const BeamWalk& walk, const Interval<Floats>& chord, const Mask16& met) {
     const Floats u = max(max(chord.low, -chord.high), 0.0f);
     return zero_unless(met, near_share(walk.around, sqrt(fma(u, u, walk.by_lamp.height2))));
-}
-
-// Interpolates a slice between the froxels around the rays, given the depths at its faces.
-BeamSlice slice_around(const BeamWalk& walk, int slice, const Floats& before, const Floats& behind) {
-    const FroxelBuffer& froxels = walk.froxels;
-    const FroxelGrid& grid = froxels.grid;
-    const size_t k = static_cast<size_t>(slice);
-    BeamSlice here;
-    here.before = before;
-    here.across = max(behind - here.before, 0.0f);
-    here.extinction = here.across * (1 / grid.thickness(k));
-    here.share = between_tiles(walk.taps, [&](size_t tile) { return froxels.beams.share(tile, walk.beam, slice); });
-    return here;
 }
 
 // The lit segments of the beam; null if froxels store the lit fraction instead.
@@ -225,10 +87,10 @@ const LitIntervals* find_lit_intervals(const BeamWalk& walk, const RayBatch& bat
     return &lit;
 }
 
-// Light of a beam on the lit segments of a part of the rays inside a slice.
-Vec3s lit_part(const BeamWalk& walk, const LitIntervals* lit, const Interval<Floats>& part, int slice,
-               const BeamSlice& here, const Mask16& wanted) {
-    if (!lit) return light_between_kinks(walk, part, slice, here, wanted);
+// Light of a beam on the lit segments of a part of the rays inside a step.
+Vec3s lit_part(const BeamWalk& walk, const LitIntervals* lit, const Interval<Floats>& part, const BeamStep& here,
+               const Mask16& wanted) {
+    if (!lit) return light_between_kinks(walk, part, here, wanted);
     Vec3s sum = splat(vec3(0));
     const Floats from = part.low + walk.by_lamp.nearest, to = part.high + walk.by_lamp.nearest;
     const Interval<float> all{least(select(wanted, from, infinity)), most(select(wanted, to, -infinity))};
@@ -239,7 +101,45 @@ Vec3s lit_part(const BeamWalk& walk, const LitIntervals* lit, const Interval<Flo
         const Mask16 some = wanted & (one.high > one.low);
         if (!any(some)) continue;
         one = {zero_unless(some, one.low), zero_unless(some, one.high)};
-        sum = fma(light_between_kinks(walk, one, slice, here, some), zero_unless(some, load(row.share)), sum);
+        sum = fma(light_between_kinks(walk, one, here, some), zero_unless(some, load(row.share)), sum);
+    }
+    return sum;
+}
+
+// Light of a beam on a chord of the rays, slice by slice; in steps where rays sample the fog themselves.
+Vec3s light_in_slices(const BeamWalk& walk, const LitIntervals* lit, const RaysReach& reach,
+                      const Interval<Floats>& chord, const Mask16& met, RayDepths& depths) {
+    const FroxelBeams& beams = walk.froxels.beams;
+    const auto length_to = [&](float z) HWY_ATTR {
+        return (Floats(z) - walk.taps.start) * walk.taps.slant - walk.by_lamp.nearest;
+    };
+    const bool close = any(walk.close > 0.0f);
+    Vec3s sum = splat(vec3(0));
+    Floats before = 0.0f;
+    for (int slice = reach.all.first, last = -1; slice < reach.all.end; ++slice) {
+        const size_t k = static_cast<size_t>(slice);
+        const float* faces =
+            close ? &beams.step_faces[static_cast<size_t>(beams.first_step[k])] : &walk.froxels.grid.faces[k];
+        const int steps = close ? beams.steps(k) : 1;
+        const float number = static_cast<float>(slice);
+        const Mask16 here = met & (reach.first <= number) & (reach.end > number) &
+                            (chord.low < length_to(faces[steps])) & (chord.high > length_to(faces[0]));
+        if (!any(here)) continue;
+        const Floats share = between_tiles(walk.taps, [&](size_t tile) { return beams.share(tile, walk.beam, slice); });
+        if (last != slice) before = depth_to(walk, slice, 0, steps, depths);
+        last = slice + 1;
+        for (int step = 0; step < steps; ++step) {
+            const Floats behind = depth_to(walk, slice, step + 1, steps, depths);
+            const float thickness = faces[step + 1] - faces[step];
+            const Floats across = max(behind - before, 0.0f);
+            const BeamStep on{slice, faces[step], thickness, before, across, across * (1 / thickness), share};
+            before = behind;
+            Interval<Floats> part{max(chord.low, length_to(faces[step])), min(chord.high, length_to(faces[step + 1]))};
+            const Mask16 wanted = here & (part.high > part.low) & (share * across > 0.0f);
+            if (!any(wanted)) continue;
+            part = {zero_unless(wanted, part.low), zero_unless(wanted, part.high)};
+            sum = sum + lit_part(walk, lit, part, on, wanted);
+        }
     }
     return sum;
 }
@@ -286,24 +186,7 @@ Vec3s beam_light(const FroxelBuffer& froxels, size_t beam, const BeamRays& rays,
         return closed_beam_light(walk, lit, chord, met) * splat(light.intensity * light.volume_scale);
 
     walk.close = proximity(walk, chord, met);
-    const auto length_to = [&](int face) HWY_ATTR {
-        return (Floats(froxels.grid.faces[static_cast<size_t>(face)]) - taps.start) * taps.slant - nearest;
-    };
-    Floats before = 0.0f;
-    for (int k = reach.all.first, last = -1; k < reach.all.end; ++k) {
-        const float slice = static_cast<float>(k);
-        Interval<Floats> part{max(chord.low, length_to(k)), min(chord.high, length_to(k + 1))};
-        const Mask16 here = met & (part.high > part.low) & (reach.first <= slice) & (reach.end > slice);
-        if (!any(here)) continue;
-        part.low = zero_unless(here, part.low), part.high = zero_unless(here, part.high);
-        if (last != k) before = depth_to(walk, k, depths);
-        const Floats behind = depth_to(walk, last = k + 1, depths);
-        const BeamSlice around = slice_around(walk, k, before, behind);
-        before = behind;
-        const Mask16 reached = here & (around.share * around.across > 0.0f);
-        if (any(reached)) sum = sum + lit_part(walk, lit, part, k, around, reached);
-    }
-    return sum * splat(light.intensity * light.volume_scale);
+    return light_in_slices(walk, lit, reach, chord, met, depths) * splat(light.intensity * light.volume_scale);
 }
 }
 }

@@ -113,6 +113,20 @@ FroxelBeams::LampFog fog_at_lamp(const FroxelScene& scene, const FroxelGrid& gri
 }
 }
 
+namespace {
+// Steps of half the size of the fog's finest detail, at most eight to a slice.
+void cut_slices(const FroxelGrid& grid, float detail, FroxelBeams& beams) {
+    constexpr float per_detail = 2, most = 8;
+    for (size_t k = 0; k < static_cast<size_t>(grid.slices()); ++k) {
+        const float steps = std::clamp(std::ceil(grid.thickness(k) * per_detail / detail), 1.0f, most);
+        beams.first_step.push_back(static_cast<int32_t>(beams.step_faces.size()));
+        for (float i = 0; i < steps; ++i) beams.step_faces.push_back(grid.faces[k] + grid.thickness(k) * (i / steps));
+    }
+    beams.first_step.push_back(static_cast<int32_t>(beams.step_faces.size()));
+    beams.step_faces.push_back(grid.faces.back());
+}
+}
+
 HWY_EXPORT(reaches_kernel);
 FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) {
     FroxelBeams beams;
@@ -128,6 +142,7 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
     }
     beams.reaches.resize(grid.tiles() * beams.lights.size());
     HWY_DYNAMIC_DISPATCH(reaches_kernel)(scene, grid, beams);
+    cut_slices(grid, fog_detail(scene.snapshot.media), beams);
     size_t index = 0;
     for (FroxelBeams::Reach& reach : beams.reaches)
         reach.index = std::exchange(index, index + static_cast<size_t>(reach.end - reach.first));

@@ -58,12 +58,15 @@ struct FroxelBeams {
     RecycledFloats shares;           // fraction of light that arrives, relative to LampFog alone and no surfaces
     size_t media = 0;                // number of media; 0 if there is only one, or none is a grid
     RecycledFloats media_shares;     // fraction of each in the extinction [(tile · media + medium) · slices + slice]
+    std::vector<int32_t> first_step; // of each slice, then their number: steps of rays that sample the fog themselves
+    std::vector<float> step_faces;   // planar depths, meters
 
     const Reach& reach(size_t tile, size_t beam) const { return reaches[tile * lights.size() + beam]; }
     float share(size_t tile, size_t beam, int slice) const {
         const Reach& of = reach(tile, beam);
         return slice < of.first || slice >= of.end ? 0 : shares[of.index + static_cast<size_t>(slice - of.first)];
     }
+    int steps(size_t slice) const { return first_step[slice + 1] - first_step[slice]; }
     size_t media_index(const FroxelGrid& grid, size_t tile, size_t medium, int slice) const {
         return (tile * media + medium) * static_cast<size_t>(grid.slices()) + static_cast<size_t>(slice);
     }
