@@ -18,6 +18,7 @@ struct Texture {
 
 // Bilinear lookup (or nearest, if the texture asks for it); v runs down as in glTF.
 vec4 sample_texture(const Texture& texture, vec2 uv);
+float sample_alpha(const Texture& texture, vec2 uv);
 
 struct Material {
     std::string name;

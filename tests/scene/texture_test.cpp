@@ -60,11 +60,19 @@ TEST(Texture, NearestDoesNotMix) {
     expect_near(sample_texture(texture, {1.0f, 1.0f}), {1, 0, 0, 1}, 1e-5f);
 }
 
-TEST(Texture, AnyCoordinateGivesATexel) {
-    const Texture texture = four_texels();
-    for (const float u : {infinity, -infinity, NAN, 1e30f, -1e30f, 1e-40f})
-        for (const float value : {sample_texture(texture, {u, u}).x, sample_texture(texture, {0.3f, u}).w})
-            EXPECT_TRUE(value >= 0 && value <= 1) << u;
+TEST(Texture, AnyCoordinateGivesATexelWhoseAlphaMayBeReadAlone) {
+    Texture texture = four_texels();
+    for (int kinds = 0; kinds < 8; ++kinds) {
+        texture.repeat_u = texture.repeat_v = kinds & 1, texture.mirror_u = texture.mirror_v = kinds & 2;
+        texture.nearest = kinds & 4;
+        for (const float u : {infinity, -infinity, NAN, 1e30f, -1e30f, 1e-40f, -1e-9f, 0.0f, 0.99999997f, 1.0f,
+                              1.9999999f, 2.0f, -2.0f, 2.7f, -2.7f, 16777216.0f})
+            for (const vec2 uv : {vec2(u), vec2(0.3f, u), vec2(u, 0.8f)}) {
+                const vec4 color = sample_texture(texture, uv);
+                for (int c = 0; c < 4; ++c) EXPECT_TRUE(color[c] >= 0 && color[c] <= 1) << u << ' ' << kinds;
+                EXPECT_EQ(sample_alpha(texture, uv), color.w) << u << ' ' << kinds;
+            }
+    }
 }
 
 TEST(Texture, TransformMovesTheCoordinates) {

@@ -28,7 +28,7 @@ float OccluderGeometry::opacity(uint32_t triangle, float u, float v) const {
     if (!masks() && !blends()) return 1;
     float alpha = material->alpha;
     if (base_texture && !mesh->uvs.empty())
-        alpha *= sample_texture(*base_texture, interpolated(mesh->uvs, mesh->triangles[triangle], u, v)).w;
+        alpha *= sample_alpha(*base_texture, interpolated(mesh->uvs, mesh->triangles[triangle], u, v));
     return masks() ? (alpha >= material->alpha_cutoff ? 1.0f : 0.0f) : std::clamp(alpha, 0.0f, 1.0f);
 }
 
