@@ -58,11 +58,12 @@ HWY_INLINE Floats depth_to(const BeamWalk& walk, int slice, int step, int steps,
                              [&](size_t tile) { return walk.froxels.sums.at(walk.froxels.grid, tile, face)[3]; });
     };
     const float share = static_cast<float>(step) / static_cast<float>(steps);
-    Floats mean = mean_at(step < steps ? slice : slice + 1);
-    if (!any(walk.close > 0.0f)) return mean;
-    if (0 < step && step < steps) mean = lerp(mean, mean_at(slice + 1), share);
+    if (!any(walk.close > 0.0f)) return mean_at(slice + step);
     const int face = walk.froxels.beams.first_step[static_cast<size_t>(slice)] + step;
     const Floats own = (own_depth_to(walk, face, known) + walk.depth_before) / walk.taps.slant;
+    if (walk.own) return own;
+    Floats mean = mean_at(step < steps ? slice : slice + 1);
+    if (0 < step && step < steps) mean = lerp(mean, mean_at(slice + 1), share);
     return nearer(walk, mean, own);
 }
 
@@ -106,7 +107,8 @@ Vec3s lit_part(const BeamWalk& walk, const LitIntervals* lit, const Interval<Flo
     return sum;
 }
 
-// Light of a beam on a chord of the rays, slice by slice; in steps where rays sample the fog themselves.
+// Light of a beam on a chord of the rays, slice by slice, in steps if the rays sample the fog themselves. Rays that do
+// and rays that do not go in two passes, so that none depends on its neighbors.
 Vec3s light_in_slices(const BeamWalk& walk, const LitIntervals* lit, const RaysReach& reach,
                       const Interval<Floats>& chord, const Mask16& met, RayDepths& depths) {
     const FroxelBeams& beams = walk.froxels.beams;
@@ -186,7 +188,12 @@ Vec3s beam_light(const FroxelBuffer& froxels, size_t beam, const BeamRays& rays,
         return closed_beam_light(walk, lit, chord, met) * splat(light.intensity * light.volume_scale);
 
     walk.close = proximity(walk, chord, met);
-    return light_in_slices(walk, lit, reach, chord, met, depths) * splat(light.intensity * light.volume_scale);
+    const Mask16 close = met & (walk.close > 0.0f), away = met & !(walk.close > 0.0f);
+    walk.own = !any(close & (walk.close < 1.0f));
+    if (any(close)) sum = sum + light_in_slices(walk, lit, reach, chord, close, depths);
+    walk.close = 0.0f, walk.own = false;
+    if (any(away)) sum = sum + light_in_slices(walk, lit, reach, chord, away, depths);
+    return sum * splat(light.intensity * light.volume_scale);
 }
 }
 }

@@ -119,6 +119,7 @@ struct BeamWalk {
     Floats whole;          // total angle of the beam on each ray
     Floats close;          // 1 for rays that pass the lamp within a few froxels, falling to 0 farther away
     Interval<Floats> full; // full intensity, inside a spot's soft edge
+    bool own = false;      // whether the rays take nothing of the fog from froxels: close is 1 for all that count
     int filter_level = 0;  // mip level that matches the spacing of the points
 
     // Scattered light times the light's profile and gobo at points of the rays.

@@ -59,7 +59,7 @@ HWY_INLINE Floats extinction_at(const BeamWalk& walk, const BeamStep& here, size
     const bool grid = of.density.kind == DensityKind::bricks;
     if (grid && !any(walk.close > 0.0f)) return mean_extinction(walk, here, medium);
     const Floats exact = density16(of, point) * gray_extinction(of.optics);
-    if (!grid || !any(walk.close < 1.0f)) return exact;
+    if (!grid || walk.own) return exact;
     const Floats mean = mean_extinction(walk, here, medium);
     return nearer(walk, mean, exact);
 }
@@ -88,14 +88,14 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, const Beam
     const float pieces = walk.light.filter ? filter_pieces : 6;
     const FroxelGrid& grid = walk.froxels.grid;
     const Mask16 close = wanted & (walk.close > 0.0f);
-    const bool exact = walk.froxels.beams.exact_shadows[walk.beam] && any(close);
+    const bool exact = walk.froxels.beams.exact_shadows[walk.beam] && any(close), own = exact && walk.own;
     const Mask16 single = (angles.angle < walk.whole * (0.25f / pieces)) & (angles.angle < 0.2f);
     const Floats cut = min(floor(angles.angle / walk.whole * pieces), pieces - 1) + 1.0f, share = 1.0f / cut;
     // Grid fog attenuates light to each point as to the middle of the slice, corrected for the fog in between.
     const float dims = dimming(walk.froxels.scene->depths[walk.froxels.beams.lights[walk.beam]]);
     const FroxelBeams::LampFog& fog = walk.froxels.beams.fog[walk.beam];
     Floats grids = 0.0f; // extinction of grid fog
-    for (size_t m = 0; m < walk.froxels.scene->snapshot.media.size(); ++m)
+    for (size_t m = 0; m < walk.froxels.scene->snapshot.media.size() && !own; ++m)
         if (walk.froxels.scene->snapshot.media[m].density.kind == DensityKind::bricks)
             grids = grids + mean_extinction(walk, here, m);
     const auto to_lamp = [&](const Floats& distance)
@@ -119,8 +119,11 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, const Beam
         const Floats length = angles.length(weight, slope);
         const Floats dimmed =
             max(depth, 0.0f) * walk.froxels.view_depth + closed_depth_to_lamp(walk, point, distance) * dims;
-        Floats passed = here.share * exp(to_lamp(to_middle) - to_lamp(distance) - depth_at_lamp(fog, distance));
-        if (exact) passed = nearer(walk, passed, exact_share(walk, point, close & here_too));
+        Floats passed = exact ? exact_share(walk, point, close & here_too) : Floats(0.0f);
+        if (!own) {
+            const Floats mean = here.share * exp(to_lamp(to_middle) - to_lamp(distance) - depth_at_lamp(fog, distance));
+            passed = exact ? nearer(walk, mean, passed) : mean;
+        }
         const Floats change = here.extinction * length * (walk.froxels.view_depth + u / max(distance, 1e-20f) * dims);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
                               near_share(walk.near, distance) * length * passed * exp(-dimmed) * mean_over(change);

@@ -114,13 +114,29 @@ FroxelBeams::LampFog fog_at_lamp(const FroxelScene& scene, const FroxelGrid& gri
 }
 
 namespace {
-// Steps of half the size of the fog's finest detail, at most eight to a slice.
-void cut_slices(const FroxelGrid& grid, float detail, FroxelBeams& beams) {
-    constexpr float per_detail = 2, most = 8;
-    for (size_t k = 0; k < static_cast<size_t>(grid.slices()); ++k) {
-        const float steps = std::clamp(std::ceil(grid.thickness(k) * per_detail / detail), 1.0f, most);
+Interval<float> planar_depths(const Camera& camera, const Box& box) {
+    const vec3 half = 0.5f * box.size();
+    const float middle = glm::dot(box.center() - camera.position, camera.forward);
+    const float reach = glm::dot(half, glm::abs(camera.forward));
+    return {middle - reach, middle + reach};
+}
+
+// Steps of two thirds of the size of the finest detail of the fog at that depth, at most four to a slice.
+void cut_slices(const FroxelGrid& grid, std::span<const Medium> media, FroxelBeams& beams) {
+    constexpr float per_detail = 1.5f, most = 4;
+    std::vector<float> steps(static_cast<size_t>(grid.slices()), 1.0f);
+    for (const Medium& medium : media) {
+        if (!is_grid(medium)) continue;
+        const float step = fog_detail({&medium, 1}) / per_detail;
+        const Interval<float> depths = planar_depths(grid.camera, medium.world_bounds);
+        for (size_t k = 0; k < steps.size(); ++k)
+            if (grid.faces[k] < depths.high && grid.faces[k + 1] > depths.low)
+                steps[k] = std::max(steps[k], std::min(std::ceil(grid.thickness(k) / step), most));
+    }
+    for (size_t k = 0; k < steps.size(); ++k) {
         beams.first_step.push_back(static_cast<int32_t>(beams.step_faces.size()));
-        for (float i = 0; i < steps; ++i) beams.step_faces.push_back(grid.faces[k] + grid.thickness(k) * (i / steps));
+        for (float i = 0; i < steps[k]; ++i)
+            beams.step_faces.push_back(grid.faces[k] + grid.thickness(k) * (i / steps[k]));
     }
     beams.first_step.push_back(static_cast<int32_t>(beams.step_faces.size()));
     beams.step_faces.push_back(grid.faces.back());
@@ -142,7 +158,7 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
     }
     beams.reaches.resize(grid.tiles() * beams.lights.size());
     HWY_DYNAMIC_DISPATCH(reaches_kernel)(scene, grid, beams);
-    cut_slices(grid, fog_detail(scene.snapshot.media), beams);
+    cut_slices(grid, scene.snapshot.media, beams);
     size_t index = 0;
     for (FroxelBeams::Reach& reach : beams.reaches)
         reach.index = std::exchange(index, index + static_cast<size_t>(reach.end - reach.first));
