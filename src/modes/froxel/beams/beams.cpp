@@ -114,6 +114,7 @@ FroxelBeams::LampFog fog_at_lamp(const FroxelScene& scene, const FroxelGrid& gri
 }
 
 namespace {
+// The planar depths that a box spans.
 Interval<float> planar_depths(const Camera& camera, const Box& box) {
     const vec3 half = 0.5f * box.size();
     const float middle = glm::dot(box.center() - camera.position, camera.forward);

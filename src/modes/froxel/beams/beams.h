@@ -58,7 +58,7 @@ struct FroxelBeams {
     RecycledFloats shares;           // fraction of light that arrives, relative to LampFog alone and no surfaces
     size_t media = 0;                // number of media; 0 if there is only one, or none is a grid
     RecycledFloats media_shares;     // fraction of each in the extinction [(tile · media + medium) · slices + slice]
-    std::vector<int32_t> first_step; // of each slice, then their number: steps of rays that sample the fog themselves
+    std::vector<int32_t> first_step; // steps of rays close to a lamp: the first of each slice, then their number
     std::vector<float> step_faces;   // planar depths, meters
 
     const Reach& reach(size_t tile, size_t beam) const { return reaches[tile * lights.size() + beam]; }
