@@ -79,16 +79,15 @@ Camera tile_camera(const FroxelGrid& grid) {
 // Selects the lights that camera rays integrate themselves (beams). None with amortized filling, which relights few
 // froxels per frame: beams would update all of them.
 void set_beams(const FroxelGrid& grid, FroxelScene& scene) {
-    if (scene.settings.visibility == FroxelVisibility::intervals)
-        scene.lamp_views_fit = has_room_for_views(
-            scene.snapshot, [](const Light& light) { return is_distant(light) ? 0 : lamp_points(light); });
+    if (scene.settings.visibility == FroxelVisibility::intervals) scene.views_fit = lamp_views_fit(scene.snapshot);
     for (size_t i = 0; i < scene.snapshot.lights.size(); ++i) {
         scene.nears.push_back(scene.settings.amortize ? NearLight{} : near_light(scene, grid, i));
         if (scene.nears.back().radius > 0) scene.beams.push_back(i);
     }
 }
 
-// Prepares exact shadows. In frames and samples beyond the first, lines see different points of a soft light.
+// Prepares exact shadows of the lights that froxels hold. In frames and samples beyond the first, lines see different
+// points of a soft light.
 void set_shadows(FroxelFrame& frame, FroxelStatics& statics) {
     FroxelScene& scene = frame.scene;
     const Occluders* occluders = scene.snapshot.occluders.get();
@@ -100,8 +99,8 @@ void set_shadows(FroxelFrame& frame, FroxelStatics& statics) {
     parallel_for(static_cast<int64_t>(lights), [&](int64_t i) {
         const Light& light = scene.snapshot.lights[static_cast<size_t>(i)];
         const auto& casters = shadow_casters(light, scene.snapshot);
-        if (!casters) return;
-        if ((is_soft(light) && spread) || (!is_distant(light) && !scene.lamp_views_fit)) {
+        if (!casters || scene.has_pixel_views(static_cast<size_t>(i))) return;
+        if ((is_soft(light) && spread) || (!is_distant(light) && !scene.views_fit)) {
             scene.slices[static_cast<size_t>(i)] = &casters->shadow_slices();
             return;
         }
@@ -120,7 +119,7 @@ void set_pixel_shadows(const View& view, FroxelScene& scene) {
     parallel_for(static_cast<int64_t>(scene.beams.size()), [&](int64_t i) {
         const size_t index = scene.beams[static_cast<size_t>(i)];
         const Light& light = scene.snapshot.lights[index];
-        if (shadow_casters(light, scene.snapshot) && has_exact_shadows(scene, light))
+        if (shadow_casters(light, scene.snapshot) && scene.has_exact_shadows(light))
             scene.pixel_views[index] = lamp_views(scene.snapshot, light, view, scene.pixel_margin);
     });
 }
@@ -219,8 +218,8 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
         });
     }
     set_beams(statics.grid, frame->scene);
-    set_shadows(*frame, statics);
     set_pixel_shadows(view, frame->scene);
+    set_shadows(*frame, statics);
 
     FroxelBuffer& buffer = frame->buffer;
     buffer.lookup = settings.of<FroxelSettings>().lookup, buffer.view_depth = settings.style.view_depth;

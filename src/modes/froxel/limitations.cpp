@@ -43,12 +43,11 @@ bool in_fog(const Snapshot& snapshot, vec3 point) {
 struct Followed {
     bool all = false, exact = false;
 };
-Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings) {
+Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings, bool views_fit) {
     const bool by_ray = !settings.amortize && !is_distant(light);
-    const bool exact = by_ray && settings.visibility == FroxelVisibility::intervals && !has_alpha_shadows(snapshot) &&
-                       !(is_soft(light) && settings.shadow_rays > 1);
-    const bool shadows = settings.visibility != FroxelVisibility::off && shadow_casters(light, snapshot);
-    return {by_ray && (has_cone(light) || exact || !shadows), exact};
+    const bool exact = by_ray && has_exact_shadows(light, snapshot, settings, views_fit);
+    const auto& casters = shadow_casters(light, snapshot);
+    return {by_ray && (has_cone(light) || exact), exact && !(casters && casters->has_alpha())};
 }
 
 // Reports a sun in the image whose glow is narrower than a froxel.
@@ -68,12 +67,11 @@ void add_glow(const View& view, const Snapshot& snapshot, const Light& light, in
 
 // Reports errors in a light's shadows, filter, motion and nearby glow.
 void add_light(const View& view, const Light& light, const Snapshot& snapshot, const FroxelSettings& settings,
-               FroxelSize size, Limitations& limitations) {
+               FroxelSize size, const Followed& by_rays, Limitations& limitations) {
     const auto add = [&](Severity severity, const LimitationKind& kind, std::array<double, 2> amounts = {}) {
         limitations.push_back({severity, &kind, Subject::light, light.name, amounts});
     };
     const bool fine = settings.tile == 1 && settings.depth_slices >= 256;
-    const Followed by_rays = followed(light, snapshot, settings);
     const bool shadows = shadow_casters(light, snapshot) != nullptr;
     if (settings.visibility == FroxelVisibility::off && light.shadows)
         add(Severity::wrong, limitation::visibility_off);
@@ -121,14 +119,15 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
 
     const FroxelSettings froxel = with_tile(settings.of<FroxelSettings>(), view.size);
     const FroxelSize size = middle_froxel(view, snapshot, froxel);
+    const bool views_fit = froxel.visibility != FroxelVisibility::intervals || lamp_views_fit(snapshot);
     for (const Light& light : snapshot.lights) {
-        add_light(view, light, snapshot, froxel, size, limitations);
+        add_light(view, light, snapshot, froxel, size, followed(light, snapshot, froxel, views_fit), limitations);
         add_glow(view, snapshot, light, froxel.tile, limitations);
     }
     if (view.has_history) {
         add_moving_camera(view, snapshot, limitations);
         add_moving_shadows(snapshot, limitations,
-                           [&](const Light& light) { return !followed(light, snapshot, froxel).exact; });
+                           [&](const Light& light) { return !followed(light, snapshot, froxel, views_fit).exact; });
         add_moving_fog(snapshot, limitations);
     }
     for (const Medium& medium : thickest_media(snapshot)) add_medium(medium, size, limitations);

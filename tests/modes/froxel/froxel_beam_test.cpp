@@ -214,6 +214,20 @@ TEST(FroxelBeam, FogNextToALampIsThatOfTheReference) {
     EXPECT_LT(relative_rmse(scattered(froxels(view, stage.snapshot, {}), rays), truth), 0.1);
 }
 
+// A trace of other fog in the froxels around a cloud's does not change how they are interpolated.
+TEST(FroxelBeam, NothingIsLostAtTheEdgeOfFog) {
+    const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0}, {96, 54});
+    const Medium ball =
+        medium_of(unit_volume(32, [](vec3 p) { return glm::length(p - 0.5f) < 0.3f ? 1.0f : 0.0f; }), 1);
+    const Light lamp = spot_light({0.5f, 0.5f, 6}, {0, 0, -1}, 50, 0.1f, 0.16f); // behind the camera
+    const Snapshot one = snapshot_of({ball}, {lamp});
+    const Snapshot two = snapshot_of({ball, homogeneous_medium(1e-6f, ball.world_bounds)}, {lamp});
+    const std::vector<Ray> rays = pixel_rays(view, one, 12);
+    const Settings wide = with({"froxel.tile=8"});
+    EXPECT_LT(relative_rmse(scattered(froxels(view, two, wide), rays), scattered(froxels(view, one, wide), rays)),
+              1e-3);
+}
+
 // Waves of fog an eighth of its depth long, in front of a lamp and around it.
 TestScene lamp_in_waves() {
     const Medium waves = medium_of(unit_volume(48, [](vec3 p) { return 0.5f + 0.5f * std::sin(25 * p.z); }), 2);

@@ -124,6 +124,11 @@ INSTANTIATE_TEST_SUITE_P(Ways, WithHistory,
                          testing::Combine(testing::Bool(),
                                           testing::Values(FroxelVisibility::rays, FroxelVisibility::intervals)));
 
+FroxelHistory history_of(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light) {
+    clear_invalid(grid, tiles, light);
+    return {grid, std::move(light), {}};
+}
+
 TEST(FroxelHistory, AStandingCameraFindsWhatItLeft) {
     const TestScene stage = lit_stage();
     FroxelGrid grid = make_froxel_grid(moved_view(0).camera, {64, 36}, 8);
@@ -134,7 +139,7 @@ TEST(FroxelHistory, AStandingCameraFindsWhatItLeft) {
         for (const float value : {static_cast<float>(i % 7), 2.0f, 3.0f, i % 5 ? 0.1f : 0.0f})
             light.values.push_back(value);
     int remembered = 0;
-    const FroxelLight back = reproject(make_history(grid, tiles, light), grid, tiles).light;
+    const FroxelLight back = reproject(history_of(grid, tiles, light), grid, tiles).light;
     for (size_t tile = 0; tile < grid.tiles(); ++tile)
         for (int k = 0; k < 16; ++k) {
             const float *was = light.at(grid, tile, k), *is = back.at(grid, tile, k);
@@ -164,7 +169,7 @@ TEST(FroxelHistory, KnowsHowMuchWiderWhatItFindsBecame) {
         FroxelGrid now = make_froxel_grid(moved, {64, 32}, 8);
         set_slices(now, 3, 9, 16, 1, 0, 0);
         const FroxelTiles seen = make_froxel_tiles(now, stage.snapshot);
-        return reproject(make_history(grid, tiles, light), now, seen).blur[now.tile_index({4, 2})];
+        return reproject(history_of(grid, tiles, light), now, seen).blur[now.tile_index({4, 2})];
     };
     EXPECT_NEAR(blur_after(0), 0, 1e-4);
     EXPECT_NEAR(blur_after(0.5f), 0.25, 1e-4);

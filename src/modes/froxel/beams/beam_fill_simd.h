@@ -6,7 +6,6 @@
 #define TYNDALL_MODES_FROXEL_BEAMS_BEAM_FILL_SIMD_H
 #endif
 
-#include "base/simd/reduce_simd.h"
 #include "modes/froxel/beams/near_simd.h"
 #include "modes/froxel/fill/scatter_simd.h"
 
@@ -101,8 +100,8 @@ Floats beam_visibility(const Fill& fill, const PacketBeams& beams, size_t beam, 
     return select(by_rays, traced_share(fill, index, within, job, plain, by_rays), share);
 }
 
-// Adds a sample's shares to the sums of a slice.
-void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, const Floats& here, const Job& job) {
+// Adds a sample's shares to the sums of a slice, with or without fog there: rays interpolate between froxels.
+void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, const Job& job) {
     const FroxelBeams& kept = *fill.pass.beams;
     for (size_t b = 0; b < kept.lights.size(); ++b) {
         if (job.slice < beams.all[b].first || job.slice >= beams.all[b].end || kept.by_rays_alone[b]) continue;
@@ -120,10 +119,9 @@ void add_beams(const Fill& fill, PacketBeams& beams, const FroxelLanes& lanes, c
         share = share * style_fade(fill.scene.style, fill.grid.camera, lanes.point);
         store(load(beams.sums[b].data()) + zero_unless(some, share), beams.sums[b].data());
     }
-    const Floats inverse = zero_unless(here > 0.0f, 1.0f / max(here, 1e-30f));
     for (size_t m = 0; m < kept.media; ++m) {
         float* sum = beams.sums[kept.lights.size() + m].data();
-        store(fma(load(job.extinction[m]), inverse, load(sum)), sum);
+        store(load(sum) + load(job.extinction[m]), sum);
     }
 }
 
@@ -145,7 +143,7 @@ void put_beams(const Fill& fill, const Lanes& where, const PacketBeams& beams, i
             put(kept.shares[index], slice == reach.first, beams.sums[b][i]);
         }
         for (size_t m = 0; m < kept.media; ++m)
-            put(kept.media_shares[kept.media_index(fill.grid, where.tile[i], m, slice)], slice == 0,
+            put(kept.extinctions[kept.media_index(fill.grid, where.tile[i], m, slice)], slice == 0,
                 beams.sums[count + m][i]);
     }
 }

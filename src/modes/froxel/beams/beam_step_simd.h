@@ -48,9 +48,9 @@ HWY_INLINE Floats nearer(const BeamWalk& walk, const Floats& of_froxels, const F
 HWY_INLINE Floats mean_extinction(const BeamWalk& walk, const BeamStep& here, size_t medium) {
     const FroxelBeams& beams = walk.froxels.beams;
     if (beams.media == 0) return here.extinction;
-    return here.extinction * between_tiles(walk.taps, [&](size_t tile) {
-               return beams.media_shares[beams.media_index(walk.froxels.grid, tile, medium, here.slice)];
-           });
+    return between_tiles(walk.taps, [&](size_t tile) {
+        return beams.extinctions[beams.media_index(walk.froxels.grid, tile, medium, here.slice)];
+    });
 }
 
 // Extinction of a medium at points of the rays; grids are sampled only for rays close to the lamp.
@@ -98,12 +98,11 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, const Beam
     for (size_t m = 0; m < walk.froxels.scene->snapshot.media.size() && !own; ++m)
         if (walk.froxels.scene->snapshot.media[m].density.kind == DensityKind::bricks)
             grids = grids + mean_extinction(walk, here, m);
-    const auto to_lamp = [&](const Floats& distance)
-                             HWY_ATTR { return grids * distance * dims - depth_at_lamp(fog, distance); };
     const size_t slice = static_cast<size_t>(here.slice);
     const float slice_middle = grid.faces[slice] + 0.5f * grid.thickness(slice);
     const Floats middle = (Floats(slice_middle) - walk.taps.start) * walk.taps.slant - walk.by_lamp.nearest;
     const Floats to_middle = sqrt(fma(middle, middle, walk.by_lamp.height2));
+    const Floats share_at_middle = here.share * exp(-depth_at_lamp(fog, to_middle));
     const Floats points = select(single, 1.0f, cut * 2.0f), weight = select(single, 1.0f, share * 0.5f);
     Vec3s sum = splat(vec3(0));
     for (int i = 0; i < 2 * static_cast<int>(pieces); ++i) {
@@ -121,7 +120,7 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, const Beam
             max(depth, 0.0f) * walk.froxels.view_depth + closed_depth_to_lamp(walk, point, distance) * dims;
         Floats passed = exact ? exact_share(walk, point, close & here_too) : Floats(0.0f);
         if (!own) {
-            const Floats mean = here.share * exp(to_lamp(to_middle) - to_lamp(distance) - depth_at_lamp(fog, distance));
+            const Floats mean = share_at_middle * exp((to_middle - distance) * grids * dims);
             passed = exact ? nearer(walk, mean, passed) : mean;
         }
         const Floats change = here.extinction * length * (walk.froxels.view_depth + u / max(distance, 1e-20f) * dims);

@@ -6,7 +6,11 @@
 
 #include "base/parallel.h"
 #include "base/simd/simd.h"
+#include "modes/froxel/beams/beam_shadows.h"
 #include "modes/froxel/fill/fill.h"
+#include "modes/froxel/settings.h"
+#include "trace/shadows/cached_shadows.h"
+#include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
 #include "volume/medium.h"
 
@@ -66,10 +70,14 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace tyndall {
-bool has_exact_shadows(const FroxelScene& scene, const Light& light) {
-    if (!shadow_casters(light, scene.snapshot) || scene.settings.visibility == FroxelVisibility::off) return true;
-    const bool spread = is_soft(light) && scene.settings.shadow_rays > 1;
-    return scene.settings.visibility == FroxelVisibility::intervals && !spread && scene.lamp_views_fit;
+bool lamp_views_fit(const Snapshot& snapshot) {
+    return has_room_for_views(snapshot, [](const Light& light) { return is_distant(light) ? 0 : lamp_points(light); });
+}
+
+bool has_exact_shadows(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings, bool views_fit) {
+    if (!shadow_casters(light, snapshot) || settings.visibility == FroxelVisibility::off) return true;
+    const bool spread = is_soft(light) && settings.shadow_rays > 1;
+    return settings.visibility == FroxelVisibility::intervals && !spread && views_fit;
 }
 
 namespace {
@@ -84,7 +92,7 @@ bool is_closed(const FroxelScene& scene) { return std::ranges::none_of(scene.sna
 NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t index) {
     const Light& light = scene.snapshot.lights[index];
     if (is_distant(light)) return {};
-    if (has_cone(light) || has_exact_shadows(scene, light)) return {infinity};
+    if (has_cone(light) || scene.has_exact_shadows(light)) return {infinity};
     return near_to(grid, light);
 }
 
@@ -153,7 +161,7 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
     for (const size_t index : beams.lights) {
         beams.fog.push_back(fog_at_lamp(scene, grid, index));
         beams.grids.push_back(scene.depths[index]), beams.grids.back().analytic.clear();
-        beams.exact_shadows.push_back(has_exact_shadows(scene, scene.snapshot.lights[index]) &&
+        beams.exact_shadows.push_back(scene.has_exact_shadows(scene.snapshot.lights[index]) &&
                                       !has_alpha(scene, index));
         beams.by_rays_alone.push_back(is_closed(scene) && beams.exact_shadows.back());
     }
@@ -166,7 +174,7 @@ FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid) 
     beams.shares.resize(index);
     const size_t media = scene.snapshot.media.size();
     beams.media = media > 1 && !is_closed(scene) ? media : 0;
-    beams.media_shares.resize(grid.tiles() * beams.media * static_cast<size_t>(grid.slices()));
+    beams.extinctions.resize(grid.tiles() * beams.media * static_cast<size_t>(grid.slices()));
     return beams;
 }
 }

@@ -14,6 +14,8 @@
 
 namespace tyndall {
 struct FroxelScene;
+struct FroxelSettings;
+struct Snapshot;
 
 // The part of a light that look-ups integrate per ray: all of it near the lamp, and less from half the radius on;
 // froxels hold the rest. 0 = none, infinite = all.
@@ -34,8 +36,11 @@ inline float filter_point_angle(const Light& light) { return cone_angle(light) /
 // fog around the lamp. 0 for a lamp behind the camera.
 NearLight near_to(const FroxelGrid& grid, const Light& light);
 
+// Whether shadow views of all lamps fit in memory.
+bool lamp_views_fit(const Snapshot& snapshot);
+
 // Whether a light's shadows are found exactly along rays, except those of surfaces with alpha, or it has none.
-bool has_exact_shadows(const FroxelScene& scene, const Light& light);
+bool has_exact_shadows(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings, bool views_fit);
 
 struct FroxelBeams {
     // Slices of a tile that the light may reach, in the tile or its neighbors.
@@ -57,7 +62,7 @@ struct FroxelBeams {
     std::vector<Reach> reaches;      // [tile · lights + light]
     RecycledFloats shares;           // fraction of light that arrives, relative to LampFog alone and no surfaces
     size_t media = 0;                // number of media; 0 if there is only one, or none is a grid
-    RecycledFloats media_shares;     // fraction of each in the extinction [(tile · media + medium) · slices + slice]
+    RecycledFloats extinctions;      // of each medium, 1/m [(tile · media + medium) · slices + slice]
     std::vector<int32_t> first_step; // steps of rays close to a lamp: the first of each slice, then their number
     std::vector<float> step_faces;   // planar depths, meters
 

@@ -73,7 +73,7 @@ HWY_NOINLINE void fill_slice(const Fill& fill, Packet& packet, int slice) {
                       slice,        sample,
                       sheet,        fill.exact() ? &packet.exact[s] : nullptr,
                       extinction,   here * whole.length * fill.scene.style.view_depth};
-        if (has_beams(fill) && any(here > 0.0f)) add_beams(fill, packet.beams, lanes, here, job);
+        if (has_beams(fill)) add_beams(fill, packet.beams, lanes, job);
         if (!any(lit)) continue;
         Vec3s sum = other_light(fill, lanes, extinction);
         for (size_t i = 0; i < snapshot.lights.size(); ++i)

@@ -32,10 +32,13 @@ struct FroxelScene {
     std::vector<const ShadowSlices*> slices; // null where there are none; owned by the snapshot
     // Per light, shadow views for shadows found per camera ray; else empty.
     std::vector<LampViews> pixel_views;
-    bool lamp_views_fit = true;                 // whether those fit in memory
+    bool views_fit = true;                      // whether those fit in memory
     float pixel_margin = 0;                     // how far a ray may stray from its pixel, pixels
     std::shared_ptr<const FluenceGrid> fluence; // null = single scattering only
 
+    bool has_exact_shadows(const Light& light) const {
+        return tyndall::has_exact_shadows(light, snapshot, settings, views_fit);
+    }
     bool has_pixel_views(size_t light) const { return light < pixel_views.size() && !pixel_views[light].empty(); }
     NearLight near(size_t light) const { return light < nears.size() ? nears[light] : NearLight{}; }
     // Whether all of a light is integrated per ray, and none of it in froxels.

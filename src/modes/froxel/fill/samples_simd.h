@@ -102,7 +102,6 @@ void lane_sample(const Fill& fill, const Lanes& lanes, int slice, int sample, si
     const float* depth = tiles.depth.data() + lanes.tile[i] * rays;
     float z = near + u * (far - near);
     size_t ray = static_cast<size_t>(tiles.deepest[lanes.tile[i]]);
-    if (fill.exact() && depth[first] > near) ray = first;
     if (depth[ray] <= z) z = 0.5f * (near + depth[ray]);
     for (size_t j = 0; j < rays && ray != first; ++j)
         if (const size_t next = (first + j) % rays; depth[next] > z) {
@@ -111,7 +110,7 @@ void lane_sample(const Fill& fill, const Lanes& lanes, int slice, int sample, si
         }
     const vec2 pixel = fill.grid.pixel_of(vec2(lanes.at[i]) + tiles.offsets[ray]);
     points.x[i] = pixel.x, points.y[i] = pixel.y, points.z[i] = z;
-    points.high[i] = std::min(far, depth[ray]), points.first[i] = ray == first ? 1.0f : 0.0f;
+    points.high[i] = std::min(far, depth[ray]);
 }
 
 FroxelSamples froxel_samples(const Fill& fill, const Lanes& lanes, const FirstRays& first, int slice, int sample) {

@@ -39,11 +39,6 @@ void clear_invalid(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight
     });
 }
 
-FroxelHistory make_history(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light, FroxelStatics statics) {
-    clear_invalid(grid, tiles, light);
-    return {grid, std::move(light), std::move(statics)};
-}
-
 std::vector<uint8_t> stale_froxels(const FroxelGrid& grid, const FroxelLight& remembered, std::span<const Light> lights,
                                    int frame, bool statics) {
     const ivec2 turns[] = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};

@@ -15,10 +15,8 @@ struct FroxelHistory {
     FroxelStatics statics;
 };
 
-// Zeroes froxels that are hidden, empty or not finite. make_history() makes a history of the result.
+// Zeroes froxels that are hidden, empty or not finite, as a history wants them.
 void clear_invalid(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight& light);
-FroxelHistory make_history(const FroxelGrid& grid, const FroxelTiles& tiles, FroxelLight light,
-                           FroxelStatics statics = {});
 
 // The history's light and extinction at the center of each of this frame's froxels; zeros where the last frame did not
 // see it.
