@@ -255,9 +255,11 @@ Snapshot make_snapshot(const Scene& scene, const FrameMoments& frame, const Snap
         all->push_back(make_snapshot(scene, moments[i], i == 0 ? previous : &all->back(), missing, files));
         if (i > 0) continue;
         const double most = growths_affordable(scene, all->front());
-        if (by_velocity || most < wanted)
-            moments = with_growths(frame.moments,
-                                   std::min(std::max(wanted, files_wanted(scene, all->front(), seconds)), most));
+        if (!by_velocity && most >= wanted) continue;
+        const std::optional<double> grown = moments[0].grown;
+        moments =
+            with_growths(frame.moments, std::min(std::max(wanted, files_wanted(scene, all->front(), seconds)), most));
+        if (moments[0].grown != grown) all->front() = make_snapshot(scene, moments[0], &all->front(), missing, files);
     }
     Moment middle_moment = frame.middle;
     middle_moment.grown = moments[moments.size() / 2].grown;

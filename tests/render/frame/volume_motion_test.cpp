@@ -161,6 +161,18 @@ TEST(VolumeMotion, PlacesAreShared) {
 }
 
 // A file of every frame: what the one before is moved to is where the next begins.
+TEST(VolumeMotion, TheFirstMomentHasTheFogOfItsRun) {
+    Moving moving;
+    write_cube(moving.scratch.file("fog.vdb"), vec3(0), {2 * voxel, 0, 0}); // four runs: it is moved by half a voxel
+    moving.request.time_samples = 16;
+    moving.move();
+    const Snapshot snapshot = moving.snapshot();
+    ASSERT_TRUE(snapshot.moments);
+    const auto fog_of = [&](size_t moment) { return snapshot.moments->at(moment).fog_sources.at(0).bricks; };
+    for (size_t moment = 0; moment < 4; ++moment) EXPECT_EQ(fog_of(moment), fog_of(0)) << moment;
+    EXPECT_NE(fog_of(4), fog_of(3));
+}
+
 TEST(VolumeMotion, OfTheNearestFrame) {
     Moving moving;
     for (int frame = 0; frame <= 2; ++frame)
