@@ -153,7 +153,11 @@ void render_references(ChartStage& stage, References& references, Chart& chart, 
 // Drops modes that are compared by the light of lamps and suns alone when the scene has none.
 ChartJob job_for(const Scene& scene, ChartJob job, const ChartControl& control) {
     if (!scene.lights.empty() || !wants_unlit(job)) return job;
-    const std::string why = "path is skipped: it is compared by the light of lamps and suns, and the scene has none";
+    std::string skipped;
+    for (const Mode* mode : job.modes)
+        if (lights_only(*mode)) skipped += (skipped.empty() ? "" : ", ") + std::string(mode->name);
+    const std::string why =
+        "skipped: " + skipped + " would be compared by the light of lamps and suns, and the scene has none";
     std::erase_if(job.modes, [](const Mode* mode) { return lights_only(*mode); });
     if (job.modes.empty()) fail(ExitCode::usage, "--modes", why);
     if (control.remark) control.remark(why);

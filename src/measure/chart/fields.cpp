@@ -37,6 +37,7 @@ const std::vector<ChartField>& chart_fields() {
          FIELD(flicker)},
         {"gain", "of an artistic mode: best-fitting factor on its fog light", FIELD(gain)},
         {"fitted_error", "of an artistic mode: error with that gain", FIELD(fitted.error)},
+        {"fitted_uncertainty", "standard deviation of that", FIELD(fitted.uncertainty)},
         {"fitted_rmse_rel", "rmse_rel with that gain", FIELD(fitted.rmse)},
         {"fitted_inscatter_rmse_rel", "inscatter_rmse_rel with that gain", FIELD(fitted.inscatter_rmse)},
         {"fitted_rel_mse", "rel_mse with that gain", FIELD(fitted.rel_mse)},

@@ -51,7 +51,7 @@ std::shared_ptr<const Choice> choice_for(const Shot& shot, const Snapshot& snaps
     const View view = view_of(shot.scene, shot.request, shot.request.settings, shot.frame);
     const double start = steady_seconds();
     Choice choice = choose(main_mode(), view, snapshot, shot.request.settings, goal, start, options);
-    choice.measured.prepared = nullptr, choice.scout = nullptr; // they point into the snapshot
+    choice.measured.prepared = nullptr, choice.scout = nullptr; // each half has its own
     return std::make_shared<const Choice>(std::move(choice));
 }
 

@@ -96,9 +96,7 @@ namespace {
 Contest contest_of_orders(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, Plan& plan,
                           const Goal& goal, double share, const FrameOptions& options) {
     const double start = goal.clock();
-    std::function<bool()> stop;
-    if (goal.seconds > 0) stop = [&] { return goal.clock() - start > 0.15 * goal.seconds; };
-    plan.orders = orders_error(main_mode(), view, snapshot, plan.settings, goal.error, options, stop);
+    plan.orders = orders_error_for(goal, main_mode(), view, snapshot, plan.settings, options);
     Settings traced = plan.settings;
     traced.path.orders = plan.settings.fluence.orders;
     const auto path = [&] { return sole_contender(mode_of_all_orders(), view, snapshot, traced, goal, options); };

@@ -135,7 +135,8 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     const double start = goal.clock();
     Contest contest;
     Contender main = sole_contender(main_mode(), view, snapshot, settings, goal, options);
-    const Choice first = main.choice;
+    Choice first = main.choice;
+    first.measured.prepared = nullptr;
     const double main_seconds = main.seconds, begun = goal.clock();
     const double known = std::min(main_seconds, longest_relied_on * (begun - start));
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : known);
@@ -169,7 +170,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
         std::erase_if(runners, [](const Runner& runner) { return runner.next >= runner.candidates.size(); });
         if (options.progress) options.progress(1 - static_cast<double>(runners.size()) / static_cast<double>(all));
     }
-    if (contest.contenders.empty()) add({&main_mode(), first}, goal, contest);
+    if (contest.contenders.empty()) add({&main_mode(), std::move(first)}, goal, contest);
     contest.seconds = goal.clock() - start;
     return contest;
 }

@@ -141,14 +141,19 @@ std::shared_ptr<const Scout> scout_for(const Chooser& chooser, double start, Squ
 }
 }
 
+OrdersError orders_error_for(const Goal& goal, const Mode& mode, const View& view, const Snapshot& snapshot,
+                             const Settings& settings, const FrameOptions& options) {
+    std::function<bool()> stop;
+    if (goal.seconds > 0)
+        stop = [&goal, start = goal.clock()] { return goal.clock() - start > max_orders_share * goal.seconds; };
+    return orders_error(mode, view, snapshot, settings, goal.error, options, stop);
+}
+
 std::optional<OrdersError> measure_orders(const Mode& mode, const View& view, const Snapshot& snapshot,
                                           const Settings& settings, Goal& goal, const FrameOptions& options) {
     if (!takes_fluence(mode, settings)) return {};
-    const double start = goal.clock ? goal.clock() : steady_seconds();
-    std::function<bool()> stop;
-    if (goal.seconds > 0) stop = [&] { return goal.clock() - start > max_orders_share * goal.seconds; };
     const OrdersError orders =
-        goal.orders ? *goal.orders : orders_error(mode, view, snapshot, settings, goal.error, options, stop);
+        goal.orders ? *goal.orders : orders_error_for(goal, mode, view, snapshot, settings, options);
     if (goal.error > 0)
         goal.error = remaining_error(orders.pixels, goal.error).value_or(goal.error); // none = goal missed
     return orders;

@@ -28,6 +28,10 @@ struct CheckedImage {
     bool may_restart = true; // whether a finer candidate may start over
 };
 
+// orders_error() for a goal, within a share of its time limit.
+OrdersError orders_error_for(const Goal& goal, const Mode& mode, const View& view, const Snapshot& snapshot,
+                             const Settings& settings, const FrameOptions& options);
+
 // Error of multiple scattering from a grid, if it is part of the image; reduces goal.error to what that leaves.
 std::optional<OrdersError> measure_orders(const Mode& mode, const View& view, const Snapshot& snapshot,
                                           const Settings& settings, Goal& goal, const FrameOptions& options);
