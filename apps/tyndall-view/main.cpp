@@ -23,7 +23,7 @@ void add_options(const CommandLine& program, Args& args) {
     const auto option = [&](const char* name, std::string& text, const char* type, const char* help) {
         return program.option(name, text, help, type);
     };
-    option("SCENE", args.scene, "", "scene file (.json), or a .gltf, .glb or .vdb by itself").required();
+    option("SCENE", args.scene, "", "scene file (.json), or a .gltf, .glb, .vdb or .nvdb by itself").required();
     const auto quality = [&](const char* name, std::string& text, const char* type, const char* help) {
         program.option(name, text, help, type).group("Quality");
     };

@@ -3,7 +3,9 @@
 
 namespace tyndall {
 void append_pixel_rows(std::vector<SettingRow>& rows) {
-    rows.push_back(number_row("pixel.samples", "", 1, 4096, "camera rays per pixel", TYNDALL_FIELD(pixel.samples)));
+    rows.push_back(number_row("pixel.samples", "", 1, 4096,
+                              "camera rays per pixel; path takes 16 times the number of a quality",
+                              TYNDALL_FIELD(pixel.samples)));
     rows.push_back(choice_row("pixel.filter", {"box", "tent", "gaussian", "blackman_harris", "center"},
                               "pixel reconstruction filter; center = every sample at the pixel center",
                               TYNDALL_FIELD(pixel.filter)));

@@ -263,7 +263,8 @@ Run add_plan(const Command& program) {
         "Example: tyndall plan scenes/window.json --target-error 0.02\n"
         "Each term of the light is switched off in turn, on a few pixels, and the difference measured; where\n"
         "a closed form bounds it closely enough, that is used instead. Modes are then measured from coarse\n"
-        "to fine against exact single scattering. tyndall render --mode auto does the same and renders.\n"
+        "to fine against exact single scattering. tyndall render --mode auto makes a shorter search, without\n"
+        "testing terms, and renders.\n"
         "Exit code 0: a mode reaches the goal; 1: none does.");
     return [args](const Globals& globals) { return run_plan(*args, globals); };
 }

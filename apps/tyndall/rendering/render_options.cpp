@@ -27,9 +27,10 @@ void add_mode(const Command& command, RenderOptions& args) {
         .option("--mode", args.mode,
                 "rendering technique (default: march), or auto: the quickest that reaches\n"
                 "--target-error (default: by quality, 0.05 for preview) or the best for\n"
-                "--time-budget, as tyndall plan finds it for the first frame. Several\n"
-                "(a,b,c) or all: each then writes its own files, out.MODE.####.exr, and\n"
-                "a PNG shows them side by side; tyndall modes lists them",
+                "--time-budget, by a short search on the first frame (tyndall plan searches\n"
+                "thoroughly). Several (a,b,c) or all: each then writes its own files,\n"
+                "out.MODE.####.exr, and a PNG shows them side by side; tyndall modes lists\n"
+                "them",
                 "NAMES")
         .group("Quality");
 }
@@ -48,7 +49,8 @@ void add_how(const Command& command, RenderOptions& args) {
            "0.01 for instance; not for billboard and radial-blur. A mode's error is\n"
            "measured on a few pixels against exact single scattering, and its steps,\n"
            "maps and grids are chosen by it, except those given by --set; path has no\n"
-           "error but noise. Exit code 1 when the error stays larger",
+           "error but noise. Exit code 1 when the error stays larger, and after ten\n"
+           "minutes of a frame without --time-budget",
            "E");
     option("--time-budget", args.time_budget,
            "the best image in this many seconds per frame, with at least one ray per\n"

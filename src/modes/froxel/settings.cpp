@@ -24,11 +24,12 @@ void append_froxel_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row("froxel.depth_growth", "", 0.1, 256,
                               "thickness of the last slice relative to the first; 1 = all equal",
                               TYNDALL_FIELD(of<FroxelSettings>().depth_growth)));
-    rows.push_back(
-        choice_row("froxel.visibility", {"off", "rays", "intervals"},
-                   "shadows of surfaces in the fog; rays = sampled in each froxel, intervals = exact lit fraction of "
-                   "the line through its center, and for lamps of each camera ray if their shadows fit in 1 GiB",
-                   TYNDALL_FIELD(of<FroxelSettings>().visibility)));
+    rows.push_back(choice_row(
+        "froxel.visibility", {"off", "rays", "intervals"},
+        "shadows of surfaces in the fog; rays = sampled in each froxel; intervals = found exactly: for suns on "
+        "the line through each froxel's center, for lamps on every camera ray if their shadow volumes fit "
+        "in 1 GiB",
+        TYNDALL_FIELD(of<FroxelSettings>().visibility)));
     rows.push_back(
         number_row("froxel.shadow_rays", "", 1, 256,
                    "points per froxel at which light and fog are sampled; with intervals, points on a soft light",
