@@ -45,8 +45,9 @@ HWY_INLINE Vec3s scattering(const std::vector<Medium>& media, const Floats& cosi
 HWY_INLINE Vec3s scattered_light(const Light& light, const LightDepth& depth, const Vec3s& position,
                                  const Floats& amount, const Vec3s& scattering) {
     const Mask16 wanted = amount > 0.0f;
-    const Floats dimmed = exp(-light_depth16(depth, position, wanted));
-    const Vec3s sum = scattering * zero_unless(wanted, amount * dimmed) * splat(light.intensity * light.volume_scale);
+    const Floats transmittance = exp(-light_depth16(depth, position, wanted));
+    const Vec3s sum =
+        scattering * zero_unless(wanted, amount * transmittance) * splat(light.intensity * light.volume_scale);
     return light.filter && has_colors(*light.filter) ? sum * tint_at(light, position) : sum;
 }
 

@@ -41,6 +41,12 @@ Ray camera_ray(const Camera& camera, ivec2 size, vec2 pixel) {
     return {camera.position, direction / length, camera.far * length};
 }
 
+Interval<float> planar_depths(const Camera& camera, const Box& box) {
+    const float middle = glm::dot(box.center() - camera.position, camera.forward);
+    const float reach = glm::dot(0.5f * box.size(), glm::abs(camera.forward));
+    return {middle - reach, middle + reach};
+}
+
 std::optional<vec2> pixel_of(const Camera& camera, ivec2 size, vec3 point) {
     const vec2 extent(size);
     const vec3 offset = point - camera.position;

@@ -40,6 +40,9 @@ inline float view_height(const Camera& camera, float depth = 1) {
     return camera.ortho_height > 0 ? camera.ortho_height : 2 * depth * std::tan(0.5f * camera.vertical_fov);
 }
 
+// The planar depths that a box spans.
+Interval<float> planar_depths(const Camera& camera, const Box& box);
+
 // Distance along the viewing direction (planar z) of a point on a ray of this camera.
 inline float planar_depth(const Camera& camera, const Ray& ray, float t) {
     return glm::dot(ray.at(t) - camera.position, camera.forward);

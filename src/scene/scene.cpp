@@ -1,6 +1,7 @@
 // Transforms, files and bounds of a scene's parts.
 #include "scene/scene.h"
 
+#include "base/text.h"
 #include "scene/pose.h"
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -16,6 +17,8 @@ mat4 own_matrix(const Node& node, double seconds) {
            glm::scale(mat4(1), node.scale.at(seconds));
 }
 }
+
+std::string GridSource::text() const { return joined(grids, "\n") + map.text(); }
 
 dmat4 world_matrix(const Scene& scene, int node, double seconds) {
     dmat4 world(1);

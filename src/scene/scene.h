@@ -115,6 +115,8 @@ struct GridSource {
     FileSequence sequence;
     std::vector<std::string> grids; // one name, or three for red, green and blue
     ValueMap map;
+
+    std::string text() const; // identifies grids and map in cache keys
 };
 
 // Velocities that move a medium from files while the shutter is open: in the file's length units per second or frame,

@@ -56,11 +56,6 @@ StoredProperty read_property(const std::filesystem::path& file, const GridSource
     return property;
 }
 
-std::string grids_text(const GridSource& source) {
-    std::string text = joined(source.grids, "\n");
-    return text + source.map.text();
-}
-
 // Shared arguments for reading properties.
 struct ReadContext {
     const std::string& medium; // its name
@@ -93,10 +88,10 @@ FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, 
                         std::span<const GridProperty> known) {
     const auto file = sequence_file(source.sequence, frame, reading.missing);
     if (!file) return {};
-    const std::string key = file_key(*file) + grids_text(source);
+    const std::string key = file_key(*file) + source.text();
     CacheFolder* files = reading.snapshot.files.get();
     const std::string content =
-        files ? "property " + file_hash(*file, *files->inputs) + " " + grids_text(source) : std::string();
+        files ? "property " + file_hash(*file, *files->inputs) + " " + source.text() : std::string();
     for (const GridProperty& one : known)
         if (one.key == key) return {one, content};
     StoredProperty stored =

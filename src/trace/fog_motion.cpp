@@ -25,7 +25,7 @@ std::shared_ptr<const FileVelocity> velocity_of(const GridSource& source, int fr
     const auto file = sequence_file(source.sequence, frame, missing);
     if (!file) return nullptr;
     auto velocity = std::make_shared<FileVelocity>();
-    const std::string grids = joined(source.grids, "\n") + source.map.text();
+    const std::string grids = source.text();
     velocity->key = file_key(*file) + grids;
     if (before && before->key == velocity->key) return before;
     if (CacheFolder* files = snapshot.files.get())

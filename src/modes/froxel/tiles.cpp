@@ -89,12 +89,7 @@ float reach_of(const Medium& medium, Ray ray) {
 
 float scene_depth(const FroxelGrid& grid, const Snapshot& snapshot) {
     const Box& bounds = snapshot.bounds;
-    float depth = 0;
-    for (int corner = 0; corner < 8 && !bounds.empty(); ++corner) {
-        const vec3 point(corner & 1 ? bounds.high.x : bounds.low.x, corner & 2 ? bounds.high.y : bounds.low.y,
-                         corner & 4 ? bounds.high.z : bounds.low.z);
-        depth = std::max(depth, glm::dot(point - grid.camera.position, grid.camera.forward));
-    }
+    const float depth = bounds.empty() ? 0 : planar_depths(grid.camera, bounds).high;
     return depth > 0 ? depth : bounds.empty() ? snapshot.extent : glm::length(bounds.size());
 }
 

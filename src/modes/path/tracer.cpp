@@ -9,23 +9,13 @@
 
 namespace tyndall {
 namespace {
-// Position of a camera ray in the image, 0..1 from the upper left.
+// Position of a camera ray in the image, 0..1 from the upper left. With a lens, the pinhole's ray leads to the same
+// point in the plane of focus.
 vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
     const Camera& camera = tracer.camera;
-    const float aspect = static_cast<float>(tracer.size.x) / tracer.size.y;
-    vec2 screen;
-    if (camera.ortho_height > 0) {
-        const vec3 offset = (ray.origin - camera.position) / (0.5f * camera.ortho_height);
-        screen = {glm::dot(offset, camera.right), glm::dot(offset, camera.up)};
-    } else {
-        const float along = glm::dot(ray.direction, camera.forward);
-        // With a lens, the pinhole's ray leads to the same point in the plane of focus.
-        const vec3 direction =
-            camera.lens ? ray.direction + (ray.origin - camera.position) * (along / camera.lens.focus) : ray.direction;
-        const float depth = along * std::tan(0.5f * camera.vertical_fov);
-        screen = vec2(glm::dot(direction, camera.right), glm::dot(direction, camera.up)) / depth;
-    }
-    return {0.5f * (screen.x / aspect + 1), 0.5f * (1 - screen.y)};
+    const float depth = camera.lens ? camera.lens.focus : 1, along = glm::dot(ray.direction, camera.forward);
+    const vec3 point = camera.ortho_height > 0 ? ray.origin : ray.at(depth / along);
+    return pixel_of(camera, tracer.size, point).value_or(vec2(0)) / vec2(tracer.size);
 }
 
 // Solid-angle pdf with which light sampling at the start of the line picks this point of an emissive surface.

@@ -60,9 +60,9 @@ void march_sun(const Packet& packet, size_t index) {
         const Mask16 lit = share > 0.0f;
         if (!any(lit)) continue;
         const Vec3s position = packet.at(fma(packet.jitter, length, low));
-        const Floats dimmed = share * part * exp(-light_depth16(packet.march.depths[index], position, lit));
+        const Floats arriving = share * part * exp(-light_depth16(packet.march.depths[index], position, lit));
         for (size_t m = 0; m < packet.media(); ++m)
-            add(load(scratch.extinction[static_cast<size_t>(k) * packet.media() + m].data()) * dimmed, scattered[m]);
+            add(load(scratch.extinction[static_cast<size_t>(k) * packet.media() + m].data()) * arriving, scattered[m]);
     }
     const Floats cosine = dot(splat(-packet.march.snapshot.lights[index].direction), packet.direction);
     for (size_t m = 0; m < packet.media(); ++m)

@@ -153,8 +153,9 @@ void march_light(const Packet& packet, size_t index, Floats& taken) {
             const Floats extinction = extinction_at(packet, position, extinctions), inside = extinction * length;
             const Floats depth = along.at(passing.nearest + low);
             const Floats seen = view_weight(packet, exp(-depth), depth, inside, mean_transmittance(inside), position);
-            const Floats dimmed = exp(-light_depth16(march.depths[index], position, active));
-            const Floats weight = zero_unless(active, turning.length(seen, slope) * light_at.amount * share * dimmed);
+            const Floats transmittance = exp(-light_depth16(march.depths[index], position, active));
+            const Floats weight =
+                zero_unless(active, turning.length(seen, slope) * light_at.amount * share * transmittance);
             const Floats cosine = dot(light_at.to_light, packet.direction);
             if (light.filter && has_colors(*light.filter))
                 add_tinted(packet, index, tint_at(light, position), extinctions, weight, cosine);

@@ -50,9 +50,9 @@ void prepare_beams(const Fill& fill, const Lanes& where, PacketBeams& beams) {
         for (size_t b = 0; b < count; ++b) {
             const size_t first = (static_cast<size_t>(sample) * count + b) * slices;
             if (beams.all[b].end > 0 && !kept.by_rays_alone[b] && !fill.scene.has_pixel_views(kept.lights[b]))
-                find_beam_lit(fill.scene, fill.grid, fill.tiles, kept.lights[b], where.at, beam_ray(fill, sample),
-                              fill.samples() > 1 ? indices : nullptr, beams.reaches.data() + 16 * b,
-                              beams.inside.data() + first, beams.lit.data() + first);
+                find_beam_lengths(fill.scene, fill.grid, fill.tiles, kept.lights[b], where.at, beam_ray(fill, sample),
+                                  fill.samples() > 1 ? indices : nullptr, beams.reaches.data() + 16 * b,
+                                  beams.inside.data() + first, beams.lit.data() + first);
         }
     }
 }

@@ -84,7 +84,7 @@ const LitIntervals* find_lit_intervals(const BeamWalk& walk, const RayBatch& bat
     alignas(64) float low[16], high[16];
     store(zero_unless(met, max(chord.low + walk.by_lamp.nearest, 0.0f)), low);
     store(zero_unless(met, chord.high + walk.by_lamp.nearest), high);
-    find_beam_lit(scene.pixel_views[light], walk.light.position, batch, scene.pixel_margin, low, high, lit);
+    find_lit_segments(scene.pixel_views[light], walk.light.position, batch, scene.pixel_margin, low, high, lit);
     return &lit;
 }
 

@@ -24,26 +24,6 @@ LampViews lamp_views(const Snapshot& snapshot, const Light& light, const View& v
 }
 
 namespace {
-using PathPacket = std::vector<Interval<double>>[16];
-
-// Appends the segments that one point of the lamp lights.
-void append_lit_from(const ShadowView& view, const RayBatch& batch, int tile, const Interval<double> (&ranges)[16],
-                     PathPacket& stretches) {
-    static thread_local std::vector<ShadowCrossing> crossings;
-    ShadowViewRays rays;
-    rays.edges = false, rays.tile = tile;
-    for (size_t i = 0; i < batch.rays.size(); ++i) {
-        if (!(ranges[i].low < ranges[i].high)) continue;
-        const float end = std::nextafter(static_cast<float>(ranges[i].high), infinity);
-        place_ray(view, {batch.rays[i].origin, batch.rays[i].direction, end}, static_cast<int>(i), rays);
-    }
-    crossings.clear();
-    find_crossings(view, rays, crossings);
-    int dark[16];
-    std::fill(dark, dark + 16, view.dark);
-    append_lit(dark, crossings, ranges, stretches);
-}
-
 // A segment, and the fraction of the lamp that lights it.
 struct Shared {
     float low, high, share;
@@ -51,7 +31,7 @@ struct Shared {
 
 // The segments that one point of the lamp lights, per ray.
 struct LitByPoint {
-    PathPacket lit;
+    LitSegments lit;
 };
 
 // Splits a ray wherever one of the points starts or stops lighting it. Neighboring points light similar segments, so
@@ -122,8 +102,8 @@ void join_short(const Ray& ray, vec3 lamp, std::vector<Shared>& shared) {
 }
 }
 
-void find_beam_lit(const LampViews& views, vec3 lamp, const RayBatch& batch, float margin, const float (&low)[16],
-                   const float (&high)[16], LitIntervals& lit) {
+void find_lit_segments(const LampViews& views, vec3 lamp, const RayBatch& batch, float margin, const float (&low)[16],
+                       const float (&high)[16], LitIntervals& lit) {
     static thread_local std::vector<LitByPoint> points;
     points.resize(views.size());
     Interval<double> ranges[16];
@@ -131,7 +111,7 @@ void find_beam_lit(const LampViews& views, vec3 lamp, const RayBatch& batch, flo
     const int tile = tile_of(*views.front(), batch.positions, margin);
     for (size_t k = 0; k < views.size(); ++k) {
         for (std::vector<Interval<double>>& of_ray : points[k].lit) of_ray.clear();
-        append_lit_from(*views[k], batch, tile, ranges, points[k].lit);
+        append_lit(*views[k], batch.rays, ranges, tile, points[k].lit);
     }
 
     static thread_local std::vector<Shared> shared;

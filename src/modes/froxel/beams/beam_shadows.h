@@ -29,6 +29,6 @@ struct LitIntervals {
 // Finds the segments between low and high of each ray that the lamp lights, for rays of the views' camera no farther
 // than `margin` from their pixels. Penumbrae that are short relative to the lamp's distance become sharp edges. Rays
 // with low >= high are skipped.
-void find_beam_lit(const LampViews& views, vec3 lamp, const RayBatch& batch, float margin, const float (&low)[16],
-                   const float (&high)[16], LitIntervals& lit);
+void find_lit_segments(const LampViews& views, vec3 lamp, const RayBatch& batch, float margin, const float (&low)[16],
+                       const float (&high)[16], LitIntervals& lit);
 }

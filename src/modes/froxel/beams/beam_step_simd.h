@@ -92,7 +92,7 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, const Beam
     const Mask16 single = (angles.angle < walk.whole * (0.25f / pieces)) & (angles.angle < 0.2f);
     const Floats cut = min(floor(angles.angle / walk.whole * pieces), pieces - 1) + 1.0f, share = 1.0f / cut;
     // Grid fog attenuates light to each point as to the middle of the slice, corrected for the fog in between.
-    const float dims = dimming(walk.froxels.scene->depths[walk.froxels.beams.lights[walk.beam]]);
+    const float scale = light_depth_scale(walk.froxels.scene->depths[walk.froxels.beams.lights[walk.beam]]);
     const FroxelBeams::LampFog& fog = walk.froxels.beams.fog[walk.beam];
     Floats grids = 0.0f; // extinction of grid fog
     for (size_t m = 0; m < walk.froxels.scene->snapshot.media.size() && !own; ++m)
@@ -116,16 +116,16 @@ Vec3s light_within(const BeamWalk& walk, const EquiAngular16& angles, const Beam
         const Vec3s point = fma(walk.rays.direction, u + walk.by_lamp.nearest, walk.rays.origin);
         const Floats depth = fma(here.across, place, here.before) * walk.taps.slant - walk.depth_before;
         const Floats length = angles.length(weight, slope);
-        const Floats dimmed =
-            max(depth, 0.0f) * walk.froxels.view_depth + closed_depth_to_lamp(walk, point, distance) * dims;
+        const Floats depths =
+            max(depth, 0.0f) * walk.froxels.view_depth + closed_depth_to_lamp(walk, point, distance) * scale;
         Floats passed = exact ? exact_share(walk, point, close & here_too) : Floats(0.0f);
         if (!own) {
-            const Floats mean = share_at_middle * exp((to_middle - distance) * grids * dims);
+            const Floats mean = share_at_middle * exp((to_middle - distance) * grids * scale);
             passed = exact ? nearer(walk, mean, passed) : mean;
         }
-        const Floats change = here.extinction * length * (walk.froxels.view_depth + u / max(distance, 1e-20f) * dims);
+        const Floats change = here.extinction * length * (walk.froxels.view_depth + u / max(distance, 1e-20f) * scale);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
-                              near_share(walk.near, distance) * length * passed * exp(-dimmed) * mean_over(change);
+                              near_share(walk.near, distance) * length * passed * exp(-depths) * mean_over(change);
         Vec3s towards = scattering(walk.froxels.scene->snapshot.media, point, -u / max(distance, 1e-20f),
                                    [&](size_t m) HWY_ATTR { return extinction_at(walk, here, m, point); });
         if (walk.light.filter) towards = walk.filtered(towards, point, distance);

@@ -104,7 +104,7 @@ NearLight near_to(const FroxelGrid& grid, const Light& light) {
     return {std::max(widths * froxel_width(grid, z), slices * grid.thickness(slice))};
 }
 
-float dimming(const LightDepth& depth) {
+float light_depth_scale(const LightDepth& depth) {
     return depth.method == LightTransmittance::off || depth.method == LightTransmittance::average ? 0 : depth.scale;
 }
 
@@ -117,19 +117,11 @@ FroxelBeams::LampFog fog_at_lamp(const FroxelScene& scene, const FroxelGrid& gri
         if (is_grid(medium)) extinction += density_at(medium, light.position) * gray_extinction(medium.optics);
     const float z = std::max(glm::dot(light.position - grid.camera.position, grid.camera.forward), grid.faces.front());
     const float width = froxel_width(grid, z);
-    return {extinction * dimming(scene.depths[index]), froxels * width};
+    return {extinction * light_depth_scale(scene.depths[index]), froxels * width};
 }
 }
 
 namespace {
-// The planar depths that a box spans.
-Interval<float> planar_depths(const Camera& camera, const Box& box) {
-    const vec3 half = 0.5f * box.size();
-    const float middle = glm::dot(box.center() - camera.position, camera.forward);
-    const float reach = glm::dot(half, glm::abs(camera.forward));
-    return {middle - reach, middle + reach};
-}
-
 // Steps of two thirds of the size of the finest detail of the fog at that depth, at most four to a slice.
 void cut_slices(const FroxelGrid& grid, std::span<const Medium> media, FroxelBeams& beams) {
     constexpr float per_detail = 1.5f, most = 4;

@@ -51,7 +51,7 @@ struct FroxelBeams {
     // Attenuation by the grid fog within a few froxels of a lamp, in closed form: interpolated shares would blur its
     // onset.
     struct LampFog {
-        float extinction = 0, reach = 0; // 1/m, times dimming(); meters
+        float extinction = 0, reach = 0; // 1/m, times light_depth_scale(); meters
     };
     std::vector<size_t> lights;      // indices in the scene
     std::vector<LampFog> fog;        // at each of them
@@ -78,7 +78,7 @@ struct FroxelBeams {
 };
 
 // Factor on the optical depth between a light and fog, where it is evaluated per point: 0 for methods off and average.
-float dimming(const LightDepth& depth);
+float light_depth_scale(const LightDepth& depth);
 
 // Finds the slices that beams reach and allocates their shares, which fill_froxels() fills in.
 FroxelBeams make_froxel_beams(const FroxelScene& scene, const FroxelGrid& grid);

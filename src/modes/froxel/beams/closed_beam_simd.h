@@ -40,10 +40,10 @@ Vec3s closed_light_within(const BeamWalk& walk, const Interval<Floats>& stretch,
         const Floats slope = angles.slope(select(single, 0.5f, piece / pieces)), u = slope * angles.height;
         const Floats distance = sqrt(fma(u, u, walk.by_lamp.height2));
         const Vec3s point = fma(walk.rays.direction, u + walk.by_lamp.nearest, walk.rays.origin);
-        const Floats dimmed =
+        const Floats depths =
             closed_depth_before(walk, u) * walk.froxels.view_depth + light_depth16(scene.depths[index], point, here);
         const Floats amount = strength_at(walk.light, walk.cone, walk.by_lamp, u, distance) *
-                              angles.length(weight, slope) * exp(-dimmed) *
+                              angles.length(weight, slope) * exp(-depths) *
                               style_fade(scene.style, walk.froxels.grid.camera, point);
         Vec3s towards = scattering(scene.snapshot.media, point, -u / max(distance, 1e-20f), [&](size_t m) HWY_ATTR {
             const Medium& medium = scene.snapshot.media[m];

@@ -93,25 +93,14 @@ Lines find_lines(const FroxelGrid& grid, const FroxelTiles& tiles, const Light& 
 
 // The segments that see the light: by shadow volumes if all lines see the same point of it, else by slices; all of the
 // line without either.
-using PathPacket = std::vector<Interval<double>>[16];
-void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, PathPacket& lit) {
+void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, LitSegments& lit) {
     for (std::vector<Interval<double>>& stretches : lit) stretches.clear();
     if (!lines.active) return;
     if (light < scene.views.size() && scene.views[light]) {
-        static thread_local std::vector<ShadowCrossing> crossings;
-        ShadowViewRays rays;
         Interval<double> ranges[16];
-        int dark[16];
-        std::fill(dark, dark + 16, scene.views[light]->dark);
-        rays.edges = false, rays.tile = lines.bin;
-        for (size_t lane = 0; lane < 16; ++lane) {
-            if (!(lines.active >> lane & 1)) continue;
-            place_ray(*scene.views[light], lines.rays[lane], static_cast<int>(lane), rays);
-            ranges[lane] = {0, lines.rays[lane].t_max};
-        }
-        crossings.clear();
-        find_crossings(*scene.views[light], rays, crossings);
-        return append_lit(dark, crossings, ranges, lit);
+        for (size_t lane = 0; lane < 16; ++lane)
+            if (lines.active >> lane & 1) ranges[lane] = {0, lines.rays[lane].t_max};
+        return append_lit(*scene.views[light], lines.rays, ranges, lines.bin, lit);
     }
     static thread_local std::vector<Ray> rays;
     static thread_local std::vector<LightPoint> points;
@@ -120,7 +109,7 @@ void find_stretches(const FroxelScene& scene, size_t light, const Lines& lines, 
         if (lines.active >> lane & 1) rays.push_back(lines.rays[lane]), points.push_back(lines.points[lane]);
     const ShadowSlices* slices = light < scene.slices.size() ? scene.slices[light] : nullptr;
     const ShadowSlices near = slices ? coherent_slices(*slices, rays, points) : ShadowSlices{};
-    static thread_local PathPacket found;
+    static thread_local LitSegments found;
     find_lit(near, rays, points, found);
     for (size_t lane = 0, i = 0; lane < 16; ++lane)
         if (lines.active >> lane & 1) std::swap(found[i++], lit[lane]);
@@ -139,7 +128,7 @@ void add_depths(const FroxelGrid& grid, float low, float high, size_t lane, Ligh
 
 void add_sun(const FroxelScene& scene, const FroxelGrid& grid, size_t light, const Lines& lines,
              LightInjection::Depths* slices) {
-    static thread_local PathPacket lit;
+    static thread_local LitSegments lit;
     find_stretches(scene, light, lines, lit);
     for (size_t lane = 0; lane < 16; ++lane)
         for (const Interval<double>& stretch : lit[lane])
@@ -181,7 +170,7 @@ void keep_common(const std::vector<Interval<double>>& other, std::vector<Interva
 void add_lines(const FroxelScene& scene, const FroxelGrid& grid, size_t light, Lines lines,
                LightInjection::Arrivals* slices) {
     static thread_local LightAlong along[16];
-    static thread_local PathPacket lit;
+    static thread_local LitSegments lit;
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!(lines.active >> lane & 1)) continue;
         Ray& ray = lines.rays[lane];
@@ -264,9 +253,9 @@ Interval<double> near_reach(const Light& light, const NearLight& near, const Ray
 }
 }
 
-void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, size_t light,
-                   const ivec2* lanes, size_t ray, const uint32_t* indices, const FroxelBeams::Reach* reaches,
-                   LightInjection::Depths* inside, LightInjection::Depths* lit) {
+void find_beam_lengths(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, size_t light,
+                       const ivec2* lanes, size_t ray, const uint32_t* indices, const FroxelBeams::Reach* reaches,
+                       LightInjection::Depths* inside, LightInjection::Depths* lit) {
     const Light& lamp = scene.snapshot.lights[light];
     Lines lines = find_lines(grid, tiles, lamp, static_cast<uint32_t>(light), lanes, ray, indices);
     Interval<double> chords[16];
@@ -280,7 +269,7 @@ void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const Froxe
         else
             line.t_max = std::min(line.t_max, std::nextafter(static_cast<float>(chords[lane].high), infinity));
     }
-    static thread_local PathPacket stretches;
+    static thread_local LitSegments stretches;
     find_stretches(scene, light, lines, stretches);
     for (size_t lane = 0; lane < 16; ++lane) {
         if (!(lines.active >> lane & 1)) continue;

@@ -33,9 +33,9 @@ void find_froxel_lit(const FroxelScene& scene, const FroxelGrid& grid, const Fro
                      size_t ray, const uint32_t* indices, LightInjection& lit);
 
 // Finds, per slice, the length of one ray of each tile inside a beam, and of its lit part; `indices` as above.
-void find_beam_lit(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, size_t light,
-                   const ivec2* lanes, size_t ray, const uint32_t* indices, const FroxelBeams::Reach* reaches,
-                   LightInjection::Depths* inside, LightInjection::Depths* lit);
+void find_beam_lengths(const FroxelScene& scene, const FroxelGrid& grid, const FroxelTiles& tiles, size_t light,
+                       const ivec2* lanes, size_t ray, const uint32_t* indices, const FroxelBeams::Reach* reaches,
+                       LightInjection::Depths* inside, LightInjection::Depths* lit);
 
 // Mean light at 16 points of a froxel that is large relative to its distance from a local light; points are denser
 // towards the light, and each traces a shadow ray.

@@ -80,8 +80,25 @@ namespace tyndall {
 HWY_EXPORT(append_lit_kernel);
 
 void append_lit(const int (&dark)[16], std::vector<ShadowCrossing>& crossings, const Interval<double> (&ranges)[16],
-                std::vector<Interval<double>> (&lit)[16]) {
+                LitSegments& lit) {
     HWY_DYNAMIC_DISPATCH(append_lit_kernel)(dark, crossings, ranges, lit);
+}
+
+void append_lit(const ShadowView& view, std::span<const Ray> rays, const Interval<double> (&ranges)[16], int tile,
+                LitSegments& lit) {
+    static thread_local std::vector<ShadowCrossing> crossings;
+    ShadowViewRays placed;
+    placed.edges = false, placed.tile = tile;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (ranges[i].empty()) continue;
+        const float end = std::nextafter(static_cast<float>(ranges[i].high), infinity);
+        place_ray(view, {rays[i].origin, rays[i].direction, end}, static_cast<int>(i), placed);
+    }
+    crossings.clear();
+    find_crossings(view, placed, crossings);
+    int dark[16];
+    std::fill(dark, dark + 16, view.dark);
+    append_lit(dark, crossings, ranges, lit);
 }
 }
 #endif

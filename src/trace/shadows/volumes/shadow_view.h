@@ -101,6 +101,11 @@ void find_crossings(const ShadowView& view, const ShadowViewRays& rays, std::vec
 
 // Sorts the crossings of each ray (but not `behind`) and appends the parts of its range that lie in no volume; `dark`:
 // the counts before all crossings.
+using LitSegments = std::vector<Interval<double>>[16];
 void append_lit(const int (&dark)[16], std::vector<ShadowCrossing>& crossings, const Interval<double> (&ranges)[16],
-                std::vector<Interval<double>> (&lit)[16]);
+                LitSegments& lit);
+
+// The same for up to 16 rays from the view's eye; rays with empty ranges get none. `tile`: as in ShadowViewRays.
+void append_lit(const ShadowView& view, std::span<const Ray> rays, const Interval<double> (&ranges)[16], int tile,
+                LitSegments& lit);
 }
