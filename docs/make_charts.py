@@ -39,18 +39,22 @@ def percent(share):
     return f"{100 * share:.2g} %"
 
 
+def fog_error(point):
+    """Of the fog light, but no less than what the noise of the reference leaves uncertain."""
+    return max(point["fog_error"], point["fog_uncertainty"])
+
+
 def cell(chart, kind, limit):
     """The quickest point with so little error in the fog light, or the best in so much time."""
-    points = chart["points"]
+    points = [p for p in chart["points"] if p["fog_error"] is not None]
     if kind == "error":
-        fit = [p for p in points if p["fog_error"] is not None and p["fog_error"] <= limit]
-        best = min(fit, key=lambda p: p["seconds_1"], default=None)
+        best = min((p for p in points if fog_error(p) <= limit), key=lambda p: p["seconds_1"], default=None)
     else:
-        fit = [p for p in points if p["fog_error"] is not None and p["seconds_1"] <= limit]
-        best = min(fit, key=lambda p: p["fog_error"], default=None)
+        best = min((p for p in points if p["seconds_1"] <= limit), key=fog_error, default=None)
     if best is None:
         return "-"
-    return f"`{best['mode']}` {seconds_words(best['seconds_1'])}, {percent(best['fog_error'])}"
+    most = "below " if best["fog_error"] < best["fog_uncertainty"] else ""
+    return f"`{best['mode']}` {seconds_words(best['seconds_1'])}, {most}{percent(fog_error(best))}"
 
 
 def main():

@@ -30,10 +30,11 @@ void append_froxel_rows(std::vector<SettingRow>& rows) {
         "the line through each froxel's center, for lamps on every camera ray if their shadow volumes fit "
         "in 1 GiB",
         TYNDALL_FIELD(of<FroxelSettings>().visibility)));
-    rows.push_back(
-        number_row("froxel.shadow_rays", "", 1, 256,
-                   "points per froxel at which light and fog are sampled; with intervals, points on a soft light",
-                   TYNDALL_FIELD(of<FroxelSettings>().shadow_rays)));
+    rows.push_back(number_row(
+        "froxel.shadow_rays", "", 1, 256,
+        "points per froxel at which light and fog are sampled; with intervals, points on a soft sun, or on a "
+        "soft lamp without shadows on every camera ray",
+        TYNDALL_FIELD(of<FroxelSettings>().shadow_rays)));
     rows.push_back(choice_row("froxel.lookup", {"trilinear", "tricubic", "jittered"},
                               "interpolation between froxels; tricubic = smoother, jittered = grain instead of cells",
                               TYNDALL_FIELD(of<FroxelSettings>().lookup)));

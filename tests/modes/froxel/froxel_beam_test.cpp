@@ -243,6 +243,24 @@ TEST(FroxelBeam, FogFinerThanASliceIsSampledInStepsNearALamp) {
               0.1);
 }
 
+// Soft shadows and fog finer than froxels, in the image and its beams.
+TEST(FroxelBeam, FinerFroxelsAreNoWorse) {
+    const Medium banks =
+        medium_of(unit_volume(64, [](vec3 p) { return 0.5f + 0.5f * std::sin(60 * p.x) * std::sin(60 * p.y); }), 0.5f);
+    Light lamp = spot_light({0.5f, 0.95f, 0.5f}, {0, -1, 0}, 5, 0.4f, 0.5f);
+    lamp.radius = 0.02f;
+    const TestScene stage = make_scene({banks}, {lamp}, {box_of({0.3f, 0.6f, 0.4f}, {0.5f, 0.65f, 0.6f})}, vec3(0));
+    const View view = view_of({0.5f, 0.5f, 3}, {0.5f, 0.5f, 0}, {96, 54});
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
+    const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
+    const auto error = [&](const std::vector<std::string>& rung) {
+        return relative_rmse(scattered(froxels(view, stage.snapshot, with(rung)), rays), truth);
+    };
+    const double coarse = error({"froxel.tile=8", "froxel.depth_slices=64"});
+    EXPECT_LT(error({"froxel.tile=4", "froxel.depth_slices=96", "froxel.shadow_rays=2"}), 1.05 * coarse);
+    EXPECT_LT(error({"froxel.tile=2", "froxel.depth_slices=160", "froxel.shadow_rays=4"}), 1.05 * coarse);
+}
+
 TEST(FroxelBeam, ARayDoesNotKnowItsNeighborsNorTheThreads) {
     const View view = view_of({0.2f, 0.3f, 4}, {0, 0.1f, 0});
     for (const TestScene& stage : {beam_behind_slab(), lamp_in_waves()}) {

@@ -76,8 +76,7 @@ bool lamp_views_fit(const Snapshot& snapshot) {
 
 bool has_exact_shadows(const Light& light, const Snapshot& snapshot, const FroxelSettings& settings, bool views_fit) {
     if (!shadow_casters(light, snapshot) || settings.visibility == FroxelVisibility::off) return true;
-    const bool spread = is_soft(light) && settings.shadow_rays > 1;
-    return settings.visibility == FroxelVisibility::intervals && !spread && views_fit;
+    return settings.visibility == FroxelVisibility::intervals && views_fit;
 }
 
 namespace {
@@ -97,11 +96,12 @@ NearLight near_light(const FroxelScene& scene, const FroxelGrid& grid, size_t in
 }
 
 NearLight near_to(const FroxelGrid& grid, const Light& light) {
-    constexpr float widths = 14, slices = 20;
+    constexpr float widths = 14, slices = 20, heights = 1.4f;
     const float z = glm::dot(light.position - grid.camera.position, grid.camera.forward);
     if (!(z > 0)) return {0};
     const auto slice = static_cast<size_t>(slice_of(grid, z));
-    return {std::max(widths * froxel_width(grid, z), slices * grid.thickness(slice))};
+    return {std::max(
+        {widths * froxel_width(grid, z), slices * grid.thickness(slice), heights * view_height(grid.camera, z)})};
 }
 
 float light_depth_scale(const LightDepth& depth) {
