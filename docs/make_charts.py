@@ -27,7 +27,7 @@ def picture(chart, png):
         file = pathlib.Path(directory) / "charts.html"
         file.write_text(f'<meta charset="utf-8"><body style="margin:0;font-size:0">{body}</body>')
         subprocess.run([BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars",
-                        f"--user-data-dir={directory}/profile", "--window-size=1520,690",
+                        f"--user-data-dir={directory}/profile", "--window-size=1520,720",
                         f"--screenshot={png}", file.as_uri()], check=True, capture_output=True)
 
 
