@@ -48,8 +48,11 @@ Interval<float> planar_depths(const Camera& camera, const Box& box) {
 }
 
 std::optional<vec2> pixel_of(const Camera& camera, ivec2 size, vec3 point) {
+    return pixel_of_offset(camera, size, point - camera.position);
+}
+
+std::optional<vec2> pixel_of_offset(const Camera& camera, ivec2 size, vec3 offset) {
     const vec2 extent(size);
-    const vec3 offset = point - camera.position;
     vec2 screen(glm::dot(offset, camera.right), glm::dot(offset, camera.up));
     if (camera.ortho_height > 0) {
         screen *= 2 / camera.ortho_height;

@@ -34,6 +34,8 @@ Ray camera_ray(const Camera& camera, ivec2 size, vec2 pixel);
 // Pinhole projection of a point into the image, in pixels from the upper left; may lie outside. Empty for points behind
 // the camera.
 std::optional<vec2> pixel_of(const Camera& camera, ivec2 size, vec3 point);
+// The same for a point at an offset from the camera.
+std::optional<vec2> pixel_of_offset(const Camera& camera, ivec2 size, vec3 offset);
 
 // Height of the view at a distance along the viewing direction, meters.
 inline float view_height(const Camera& camera, float depth = 1) {

@@ -13,9 +13,12 @@ namespace {
 // point in the plane of focus.
 vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
     const Camera& camera = tracer.camera;
-    const float depth = camera.lens ? camera.lens.focus : 1, along = glm::dot(ray.direction, camera.forward);
-    const vec3 point = camera.ortho_height > 0 ? ray.origin : ray.at(depth / along);
-    return pixel_of(camera, tracer.size, point).value_or(vec2(0)) / vec2(tracer.size);
+    vec3 offset = camera.lens || camera.ortho_height > 0 ? ray.origin - camera.position : vec3(0);
+    if (camera.ortho_height == 0) {
+        const float along = glm::dot(ray.direction, camera.forward);
+        offset += ray.direction * ((camera.lens ? camera.lens.focus : 1) / along);
+    }
+    return pixel_of_offset(camera, tracer.size, offset).value_or(vec2(0)) / vec2(tracer.size);
 }
 
 // Solid-angle pdf with which light sampling at the start of the line picks this point of an emissive surface.
