@@ -46,11 +46,10 @@ std::string shortened_place(std::string_view where) {
 std::span<const ExitCodeMeaning> exit_codes() {
     static constexpr ExitCodeMeaning table[] = {
         {ExitCode::ok, "done"},
-        {ExitCode::differs, "error target or time budget missed (render, merge), parts missing (merge --partial), "
-                            "frames unfinished (status), "
-                            "submission failed (submit), no mode meets the target (plan), problems found (check), a "
-                            "limit exceeded (compare), "
-                            "a failed check (verify), a mode that fails silently (stress)"},
+        {ExitCode::differs,
+         "error target or time budget missed (render, merge), parts missing (merge --partial), frames unfinished "
+         "(status), submission failed (submit), no mode meets the target (plan), problems found (check), a limit "
+         "exceeded (compare), a failed check (verify), a mode that fails silently (stress)"},
         {ExitCode::usage, "invalid command line"},
         {ExitCode::refused, "invalid input: the message names file and field"},
         {ExitCode::unreadable, "an input is missing or cannot be read"},

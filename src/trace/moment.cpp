@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
-#include "trace/node_frame.h"
 
 namespace tyndall {
 Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate, {}}; }
@@ -15,6 +14,14 @@ FrameMoments frame_moments(const Scene& scene, int frame, const Shutter& shutter
     for (const double time : shutter_times(shutter, count))
         result.moments.push_back({frame, (frame + time) / scene.frame_rate});
     return result;
+}
+
+NodeFrame node_frame(const Scene& scene, int node, double seconds, const std::string& what) {
+    const mat4 matrix = node_matrix(scene, node, seconds);
+    const vec3 back(matrix[2]);
+    if (!is_finite(vec3(matrix[3])) || !is_finite(back) || !(glm::length(back) > 0))
+        refuse(scene.file.string(), what + ": the transform of its node is singular or not finite");
+    return {vec3(matrix[3]), vec3(matrix[1]), -glm::normalize(back)};
 }
 
 namespace {

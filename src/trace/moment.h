@@ -1,5 +1,7 @@
-// Moments in time: a single one, the moments that a frame averages, and a scene's cameras at a time.
+// Moments in time: a single one, the moments that a frame averages, and a scene's nodes and cameras at a time.
 #pragma once
+#include "base/math.h"
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +26,14 @@ struct FrameMoments {
 
 // `count` moments of the shutter interval; only the middle if `count` is below 2. All have the frame's number.
 FrameMoments frame_moments(const Scene& scene, int frame, const Shutter& shutter, int count);
+
+// A node's position and axes; `forward` is normalized.
+struct NodeFrame {
+    vec3 position, up, forward;
+};
+
+// Throws Error (refused) that begins with `what` if the node's transform is singular or not finite.
+NodeFrame node_frame(const Scene& scene, int node, double seconds, const std::string& what);
 
 Camera camera_at(const Scene& scene, int camera, double seconds);
 

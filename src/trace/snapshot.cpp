@@ -15,7 +15,6 @@
 #include "trace/lights/environment.h"
 #include "trace/lights/light_filters.h"
 #include "trace/lights/light_links.h"
-#include "trace/node_frame.h"
 #include "trace/occlusion/occluders.h"
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"

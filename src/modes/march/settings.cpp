@@ -23,10 +23,9 @@ void append_march_rows(std::vector<SettingRow>& rows) {
         "march.visibility", {"off", "rays", "maps", "intervals", "exact"},
         "shadows of surfaces in the fog; intervals = integrated over the lit intervals of each ray, found without "
         "sampling (by rays for surfaces with alpha, for more than 2 million triangles, and for more than 200000 with "
-        "soft "
-        "lights, a lens, or shadow volumes over 1 GiB); rays = sampled at each step; maps = looked up in shadow maps "
-        "at each step (shadow_map.*); exact = like intervals, "
-        "with everything else integrated as exactly as the fog allows: the reference",
+        "soft lights, a lens, or shadow volumes over 1 GiB); rays = sampled at each step; maps = looked up in shadow "
+        "maps at each step (shadow_map.*); exact = like intervals, with everything else integrated as exactly as the "
+        "fog allows: the reference",
         TYNDALL_FIELD(march.visibility)));
     rows.push_back(number_row("march.nodes", "", 1, 16,
                               "with intervals: Gauss-Legendre nodes on each lit interval of fog without a grid",

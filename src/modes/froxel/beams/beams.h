@@ -33,8 +33,8 @@ inline constexpr float filter_pieces = 48;
 inline float filter_point_angle(const Light& light) { return cone_angle(light) / (2 * filter_pieces); }
 
 // The near part of a lamp by the size of the froxels around it and of the image there: beyond half its radius, froxels
-// resolve 1/r². Closer rays sample the fog themselves, so that finer froxels do not blur it more than coarse ones. 0
-// for a lamp behind the camera.
+// resolve 1/r². Closer rays sample the fog themselves; since that is more accurate, finer froxels must not make the
+// part small. 0 for a lamp behind the camera.
 NearLight near_to(const FroxelGrid& grid, const Light& light);
 
 // Whether shadow views of all lamps fit in memory.
