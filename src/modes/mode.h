@@ -64,6 +64,7 @@ struct Mode {
     bool adds_fluence = false;        // whether it can add multiple scattering (fluence.orders)
     bool interactive = false;         // whether it is fast enough for interactive camera moves
     bool samples_soft_lights = false; // whether it samples soft lights: noise instead of bias
+    bool often_fastest = false;       // whether it often reaches an error sooner than the main mode
 
     // What the stability suite (measure/stress) requires of a technique that is not artistic.
     bool resolves_density = true; // renders grids at their full detail

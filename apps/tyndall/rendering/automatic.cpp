@@ -10,7 +10,7 @@ namespace tyndall {
 namespace {
 // Time for planning: a share of what all frames would take without a plan, or of their time budget; without a budget,
 // at least a share of what one frame would take.
-constexpr double planning_share = 0.05, planning_share_of_one = 0.25;
+constexpr double planning_share = 0.05, planning_share_of_one = 0.2;
 
 // The mode of an existing first frame that --mode auto has rendered to the same goal; null if there is none.
 const Mode* mode_before(const RenderRequest& request) {
@@ -61,8 +61,11 @@ RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const S
                       std::make_shared<const Settings>(request.settings),
                       plan.chosen.mode == &main_mode() ? plan.orders : std::nullopt};
     for (const Standing& standing : plan.standings)
-        if (standing.mode == &main_mode() && standing.mode != plan.chosen.mode && standing.best)
+        if (standing.mode == &main_mode() && standing.mode != plan.chosen.mode && standing.best) {
+            const Measurement& measured = plan.chosen.choice.measured;
             result.main = std::make_shared<const Choice>(standing.best->choice);
+            result.main_work = standing.best->seconds * measured.sample_work / measured.sample_seconds;
+        }
     if (globals.quiet) return result;
     say("plan: " + printable(result.certificate, 460));
     if (globals.verbose) say(plan_text(plan));

@@ -254,6 +254,7 @@ Mode froxel_mode() {
             .color = "#E69F00",
             .uses_history = true,
             .adds_fluence = true,
-            .interactive = true};
+            .interactive = true,
+            .often_fastest = true};
 }
 }

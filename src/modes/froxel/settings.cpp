@@ -7,16 +7,16 @@
 
 namespace tyndall {
 FroxelSettings with_tile(FroxelSettings settings, ivec2 size) {
-    constexpr float widest = 8, lines = 360;
+    constexpr float lines = 360;
     const float share = std::min(static_cast<float>(size.y) / lines, 1.0f);
-    if (settings.tile == 0) settings.tile = std::max(static_cast<int>(widest * share * share), 1);
+    settings.tile = std::max(static_cast<int>(static_cast<float>(settings.tile) * share * share), 1);
     return settings;
 }
 
 void append_froxel_rows(std::vector<SettingRow>& rows) {
     rows.push_back(number_row(
-        "froxel.tile", "pixels", 0, 64,
-        "width and height of a froxel in the image; 0 = 8, less in images of fewer than 360 lines, 1 below 180",
+        "froxel.tile", "pixels", 1, 64,
+        "width and height of a froxel in the image; in images of fewer than 360 lines, less: at 180, a quarter",
         TYNDALL_FIELD(of<FroxelSettings>().tile)));
     rows.push_back(number_row("froxel.depth_slices", "", 1, 4096,
                               "froxels in depth, from the nearest fog in view to the farthest depth needed",

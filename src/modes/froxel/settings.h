@@ -9,7 +9,7 @@ enum class FroxelVisibility { off, rays, intervals };
 enum class FroxelLookup { trilinear, tricubic, jittered };
 
 struct FroxelSettings {
-    int tile = 0; // pixels; 0 = with_tile()
+    int tile = 8; // pixels, in large images: see with_tile()
     int depth_slices = 64;
     float depth_growth = 4; // thickness of the last slice over that of the first
     FroxelVisibility visibility = FroxelVisibility::intervals;
@@ -19,8 +19,8 @@ struct FroxelSettings {
     bool amortize = false;
 };
 
-// With the tile for an image of `size` pixels. In small images, froxels of 8 pixels would be wider than the shafts, and
-// there is time for more of them.
+// With the tile for an image of `size` pixels: smaller in small ones, in which froxels would be wider than the shafts,
+// and for which there is time for more of them.
 FroxelSettings with_tile(FroxelSettings settings, ivec2 size);
 
 // For the mode's row of the table.

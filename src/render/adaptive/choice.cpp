@@ -6,10 +6,6 @@
 #include <cassert>
 
 namespace tyndall {
-bool from_contest(const Choice& choice, const Mode& mode) {
-    return choice.scout && choice.scout->mode->name != mode.name;
-}
-
 double noise_target(const Choice& choice, double error) {
     const double bound = choice.has_integrator ? choice.measured.integrator.bound : 0;
     if (bound == 0) return error;

@@ -11,7 +11,13 @@ namespace tyndall {
 namespace {
 // Measured on random scenes: the median time to measure the other modes, relative to the main one's, and how often a
 // mode whose integrator leaves little room for noise misses the target error.
-constexpr double others_share = 0.25, chance_to_miss = 0.5;
+constexpr double others_share = 0.05, chance_to_miss = 0.5;
+
+// Predicted times relative to the best so far up to which a scout is worth its cost: any, and one that is cheap.
+constexpr double max_hoped = 0.75, max_hoped_if_cheap = 2;
+
+// A contest that may take less than this share of an image's time is brief.
+constexpr double brief_share = 0.5;
 
 // Times what measuring the main mode took: the longest image that is relied on when time is granted to the others.
 // Where few pixels hold most of the noise, a forecast from two samples may be thousands of times too long.
@@ -27,8 +33,11 @@ struct Runner {
     int idle = 0;                 // consecutive candidates without a clear improvement
 
     void note(double error) { idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error; }
-    // Estimated probability that the next candidate reaches an error: the lower, the further the last one missed it.
-    double chance(double error) const { return error > 0 ? std::min(error / std::sqrt(integrator), 1.0) : 1; }
+    // Estimated probability that a finer candidate reaches an error: each halves it at best.
+    double chance(double error) const {
+        const double left = static_cast<double>(candidates.size() - next);
+        return error > 0 ? std::clamp(std::exp2(left) * error / std::sqrt(integrator) - 1, 0.0, 1.0) : 1;
+    }
 };
 
 // Ratio of the bound of an image's squared noise to its expected value: large if few pixels cause the noise.
@@ -75,27 +84,34 @@ bool may_improve(const Contender& last, int idle, const Contender& best, const G
     const double least = m.prepare_seconds + m.sample_seconds;
     if (!last.choice.has_integrator) return false;
     if (idle >= max_idle) return false;
-    if (goal.error > 0 && best.reaches_goal() && least >= best.seconds) return false;
+    if (goal.error > 0 && best.reaches_goal() && least >= best.seconds_ahead()) return false;
     if (goal.error > 0 && last.reaches_goal() && m.integrator.value < 0.25 * goal.error * goal.error) return false;
     // If noise dominates or time is nearly up, a finer candidate is worse.
     return !(goal.seconds > 0 && (least > 0.5 * goal.seconds || last.error * last.error > 4 * m.integrator.value));
 }
 
-// All modes but the main one. Modes whose only error is noise take part only if `noisy`: they are never the fastest.
-std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality, bool noisy) {
+// All modes but the main one; in a `brief` contest only those that often win. Modes whose only error is noise take part
+// only if `noisy`: they are never the fastest.
+std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality, bool brief,
+                               bool noisy) {
     std::vector<Runner> runners;
     for (const Mode& mode : modes)
-        if (has_error_bound(mode) && mode.name != main_mode().name && (noisy || !is_unbiased(mode)) &&
-            (settings.fluence.orders < 2 || mode.adds_fluence))
+        if (has_error_bound(mode) && mode.name != main_mode().name && (!brief || mode.often_fastest) &&
+            (noisy || !is_unbiased(mode)) && (settings.fluence.orders < 2 || mode.adds_fluence))
             runners.push_back({&mode, candidates_of(mode, settings, quality)});
     return runners;
 }
 
-// Only the winner keeps its prepared data, which may be large.
+// Frees what takes memory and only the winner needs; the main mode may still render its image if the winner fails.
+void release(Choice& choice) {
+    choice.measured.prepared = nullptr;
+    if (from_contest(choice)) choice.scout = choice.rival = nullptr;
+}
+
 void add(Contender contender, const Goal& goal, Contest& contest) {
     const bool wins = contest.contenders.empty() || beats(contender, contest.best(), goal);
-    if (!wins) contender.choice.measured.prepared = nullptr;
-    if (wins && !contest.contenders.empty()) contest.contenders[contest.winner].choice.measured.prepared = nullptr;
+    if (!wins) release(contender.choice);
+    if (wins && !contest.contenders.empty()) release(contest.contenders[contest.winner].choice);
     contest.contenders.push_back(std::move(contender));
     if (wins) contest.winner = contest.contenders.size() - 1;
 }
@@ -108,12 +124,31 @@ Contender measure_rival(const Choice& main, double main_seconds, const Mode& mod
     Choice& choice = contender.choice;
     choice.power = choice.has_integrator ? main.power : 1;
     choice.pace = main.pace, choice.measured.sample_seconds *= main.pace;
-    choice.scout = main.scout, choice.pilot = main.pilot, choice.scout_variance = main.scout_variance;
+    choice.scout = choice.rival = main.scout, choice.pilot = main.pilot, choice.scout_variance = main.scout_variance;
     if (main.scout_variance > 0)
         choice.noise_ratio = std::max(choice.measured.sample.value / main.scout_variance, 1e-6);
     predict(contender, goal);
     if (goal.error > 0 && !leaves_room(choice, goal.error)) contender.risk = chance_to_miss * main_seconds;
     return contender;
+}
+
+// If the contender may win, renders a scout with it: compared with the main mode's, it predicts noise and time better
+// than the pilot's tiles do.
+void send_scout(Contender& contender, double best_seconds, double left, const View& view, const Snapshot& snapshot,
+                const Goal& goal, const FrameOptions& options) {
+    Choice& choice = contender.choice;
+    Contender hoped = contender; // as noisy as the main mode, and as quick as in the pilot
+    hoped.choice.noise_ratio = std::min(choice.noise_ratio, 1.0);
+    hoped.choice.measured.sample_seconds /= std::max(choice.pace, 1.0);
+    predict(hoped, goal);
+    const bool cheap = scout_samples * hoped.choice.measured.sample_seconds < left;
+    if (!hoped.reaches_goal() || hoped.seconds > (cheap ? max_hoped_if_cheap : max_hoped) * best_seconds) return;
+    const std::shared_ptr<const Scout> own =
+        make_scout(*contender.mode, view, snapshot, choice.candidate, options, goal.clock, choice.measured.prepared);
+    const double noise = noise_of(own->layers).error, main_noise = noise_of(choice.scout->layers).error;
+    if (noise > 0 && main_noise > 0) choice.noise_ratio = std::pow(noise / main_noise, 2);
+    choice.measured.sample_seconds = own->seconds / scout_samples;
+    predict(contender, goal);
 }
 }
 
@@ -121,12 +156,14 @@ Contender sole_contender(const Mode& mode, const View& view, const Snapshot& sna
                          const Goal& goal, const FrameOptions& options) {
     Contender alone{&mode, choose(mode, view, snapshot, settings, goal, goal.clock(), options)};
     predict(alone, goal);
+    const std::shared_ptr<const Scout>& scout = alone.choice.scout;
+    if (scout && scout->candidate.name == alone.choice.candidate.name) alone.done = scout->seconds;
     return alone;
 }
 
 bool beats(const Contender& a, const Contender& b, const Goal& goal) {
     if (a.reaches_goal() != b.reaches_goal()) return a.reaches_goal();
-    return a.reaches_goal() && goal.error > 0 ? a.seconds + a.risk < b.seconds + b.risk : a.error < b.error;
+    return a.reaches_goal() && goal.error > 0 ? a.seconds_ahead() < b.seconds_ahead() : a.error < b.error;
 }
 
 Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
@@ -137,7 +174,9 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     Contender main = sole_contender(main_mode(), view, snapshot, settings, goal, options);
     Choice first = main.choice;
     first.measured.prepared = nullptr;
-    const double main_seconds = main.seconds, begun = goal.clock();
+    const bool brief = share < brief_share && main.reaches_goal() && modes.size() > 1;
+    if (!brief) main.done = 0; // it counts towards one image, and others may follow
+    const double main_seconds = main.seconds_ahead(), begun = goal.clock();
     const double known = std::min(main_seconds, longest_relied_on * (begun - start));
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : known);
     const bool too_costly = goal.seconds == 0 && main.reaches_goal() && allowed < others_share * (begun - start);
@@ -147,7 +186,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
 
     std::vector<Runner> runners;
     if (first.scout && (!too_costly || contest.contenders.empty()))
-        runners = runners_of(modes, settings, goal.quality, noisy);
+        runners = runners_of(modes, settings, goal.quality, brief, noisy);
     const size_t all = std::max<size_t>(runners.size(), 1);
     while (!runners.empty()) {
         for (Runner& runner : runners) {
@@ -161,10 +200,13 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
                 runner.next = runner.candidates.size();
                 continue;
             }
-            add(measure_rival(first, main_seconds, *runner.mode, runner.candidates[runner.next++], goal), goal,
-                contest);
+            Contender rival = measure_rival(first, main_seconds, *runner.mode, runner.candidates[runner.next++], goal);
+            runner.seconds = goal.clock() - before;
+            if (goal.error > 0 && goal.seconds == 0 && rival.choice.has_integrator && !contest.contenders.empty())
+                send_scout(rival, contest.best().seconds_ahead() - rival.risk, left, view, snapshot, goal, options);
+            add(std::move(rival), goal, contest);
             const Contender& last = contest.contenders.back();
-            runner.seconds = goal.clock() - before, runner.note(last.choice.measured.integrator.bound);
+            runner.note(last.choice.measured.integrator.bound);
             if (!may_improve(last, runner.idle, contest.best(), goal)) runner.next = runner.candidates.size();
         }
         std::erase_if(runners, [](const Runner& runner) { return runner.next >= runner.candidates.size(); });

@@ -9,10 +9,12 @@ struct Contender {
     Choice choice;
     double samples = 0; // per pixel, to reach the target error; infinite = out of reach
     double seconds = 0; // to prepare and render that image
+    double done = 0;    // of these: a scout that counts towards it
     double risk = 0;    // expected extra seconds for the main mode's image, in case this one misses the target error
     double error = 0;   // predicted; if the target error is out of reach, the lowest possible
 
     bool reaches_goal() const { return samples < infinity; }
+    double seconds_ahead() const { return std::max(seconds - done, 0.0) + risk; }
     // The error that samples do not remove.
     SquaredError integrator() const { return choice.has_integrator ? choice.measured.integrator : SquaredError{}; }
 };
@@ -36,10 +38,11 @@ bool beats(const Contender& a, const Contender& b, const Goal& goal);
 // Measures the modes' candidates from coarse to fine against the main mode's ground truth, until finer ones of a mode
 // can only lose. Artistic modes take no part. With a target error, the winner is the fastest that reaches it, or else
 // the most accurate one; with a time limit only, the most accurate one within it. Times are predicted from a few
-// pixels. `view` is the image's; candidates are based on `settings`. Measuring the other modes may take `share` times
-// the time limit or, without one, the main mode's predicted time (at most twenty times what measuring it took); each
-// mode's coarsest candidate may take as much again. If measuring is predicted to take longer, no other mode is
-// measured.
+// pixels; without a time limit, also from a quick image by each candidate that may win. `view` is the image's;
+// candidates are based on `settings`. Measuring the other modes may take `share` times the time limit or, without one,
+// the main mode's predicted time (at most twenty times what measuring it took); each mode's coarsest candidate may take
+// as much again. If measuring is predicted to take longer, no other mode is measured; if `share` is below a half, only
+// those that are often fastest, unless the main mode misses the goal.
 Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
                      const Goal& goal, double share, const FrameOptions& options);
 }

@@ -275,14 +275,14 @@ Choice check_choice(const Choice& choice, const CheckedImage& picture, double un
                     const FrameOptions& options) {
     if (!choice.has_integrator || choice.is_truth) return choice;
     const Chooser chooser{mode, view, snapshot, settings, goal, options};
-    const bool rivals = from_contest(choice, mode), is_bound = overrides_candidates(mode, settings, goal.quality);
+    const bool is_bound = overrides_candidates(mode, settings, goal.quality);
     const double squared_goal = goal.error * goal.error, squared_noise = picture.noise.bound * picture.noise.bound;
     // If the integrator alone misses the goal, measure by how much on all the tiles of a drawing, however few samples
     // the image has.
     const bool hopeless = choice.measured.integrator.bound >= squared_goal;
     const auto chances = [&] {
         if (picture.layers.variance.empty()) return uniform_chances(view, snapshot);
-        return rivals ? chances_between(picture.layers, choice.scout->layers) : chances_in(picture.layers);
+        return choice.rival ? chances_between(picture.layers, choice.rival->layers) : chances_in(picture.layers);
     };
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
         chances(), salt, choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; },
@@ -319,7 +319,7 @@ Choice check_choice(const Choice& choice, const CheckedImage& picture, double un
 
     const bool missed = integrator.bound + squared_noise > squared_goal;
     if (!missed || goal.error == 0 || goal.seconds > 0 || is_bound || !picture.may_restart) return result;
-    if (rivals) return result; // the main mode is likely to be faster than a finer candidate
+    if (from_contest(choice)) return result; // the main mode is likely to be faster than a finer candidate
     return finer_than(result, chooser, pilot, std::min(work_left(integrator.bound), goal.other_work));
 }
 }

@@ -85,7 +85,7 @@ class Noise(History):
         # Froxels are jittered once there is history, by a pattern of five frames, and have no samples of their own: one
         # frame of history against sixteen, which end on the same of the five, both against a march.
         still = self.film(wind=0)
-        cases = [("froxel", "march", "froxel.tile=4", 1, 16), ("shadow-map", "shadow-map", "shadow_map.steps=6", 0, 16)]
+        cases = [("froxel", "march", "froxel.tile=64", 1, 16), ("shadow-map", "shadow-map", "shadow_map.steps=6", 0, 16)]
         for mode, truth, row, short, long in cases:
             options = ["--frames", "5", "--res", "96x64", "--set", row]
             self.render(still, truth, f"{mode}_truth", *options, history=0, samples=256)

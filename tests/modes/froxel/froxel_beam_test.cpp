@@ -223,7 +223,7 @@ TEST(FroxelBeam, NothingIsLostAtTheEdgeOfFog) {
     const Snapshot one = snapshot_of({ball}, {lamp});
     const Snapshot two = snapshot_of({ball, homogeneous_medium(1e-6f, ball.world_bounds)}, {lamp});
     const std::vector<Ray> rays = pixel_rays(view, one, 12);
-    const Settings wide = with({"froxel.tile=8"});
+    const Settings wide = as_wide(with({"froxel.tile=8"}), view.size);
     EXPECT_LT(relative_rmse(scattered(froxels(view, two, wide), rays), scattered(froxels(view, one, wide), rays)),
               1e-3);
 }
@@ -254,7 +254,7 @@ TEST(FroxelBeam, FinerFroxelsAreNoWorse) {
     const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
     const auto error = [&](const std::vector<std::string>& rung) {
-        return relative_rmse(scattered(froxels(view, stage.snapshot, with(rung)), rays), truth);
+        return relative_rmse(scattered(froxels(view, stage.snapshot, as_wide(with(rung), view.size)), rays), truth);
     };
     const double coarse = error({"froxel.tile=8", "froxel.depth_slices=64"});
     EXPECT_LT(error({"froxel.tile=4", "froxel.depth_slices=96", "froxel.shadow_rays=2"}), 1.05 * coarse);
@@ -266,8 +266,9 @@ TEST(FroxelBeam, ARayDoesNotKnowItsNeighborsNorTheThreads) {
     for (const TestScene& stage : {beam_behind_slab(), lamp_in_waves()}) {
         const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
         for (const char* way : {"froxel.tile=8", "froxel.tile=3", "froxel.depth_slices=40"}) {
+            const Settings settings = as_wide(with({way}), view.size);
             const auto seen = [&](size_t packet) {
-                return [&, packet] { return scattered(froxels(view, stage.snapshot, with({way})), rays, packet); };
+                return [&, packet] { return scattered(froxels(view, stage.snapshot, settings), rays, packet); };
             };
             const std::vector<Scatter> alone = on_threads(1, seen(1)), packed = on_threads(3, seen(16));
             for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(alone[i].radiance, packed[i].radiance) << way << i;

@@ -23,7 +23,8 @@ TEST(FroxelGrid, SmallImagesHaveSmallFroxels) {
         EXPECT_EQ(with_tile({}, {lines * 16 / 9, lines}).tile, tile) << lines;
     FroxelSettings chosen;
     chosen.tile = 16;
-    EXPECT_EQ(with_tile(chosen, {96, 54}).tile, 16);
+    EXPECT_EQ(with_tile(chosen, {640, 360}).tile, 16);
+    EXPECT_EQ(with_tile(chosen, {320, 180}).tile, 4);
 }
 
 TEST(FroxelGrid, PointsOfThePictureComeBack) {

@@ -33,7 +33,7 @@ protected:
         result.of<FroxelSettings>().tile = 2;
         result.of<FroxelSettings>().amortize = std::get<0>(GetParam()),
         result.of<FroxelSettings>().visibility = std::get<1>(GetParam());
-        return result;
+        return as_wide(result, view_of({}, {0, 0, -1}).size);
     }
 };
 

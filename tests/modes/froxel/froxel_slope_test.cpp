@@ -17,7 +17,8 @@ TEST(Froxel, ErrorFallsAtLeastAsTheRootOfTheRefinement) {
         Settings settings;
         settings.of<FroxelSettings>().tile = 8 / refinement,
         settings.of<FroxelSettings>().depth_slices = 8 * refinement;
-        const double error = relative_rmse(scattered(froxels(view, stage.snapshot, settings), rays), truth);
+        const double error =
+            relative_rmse(scattered(froxels(view, stage.snapshot, as_wide(settings, view.size)), rays), truth);
         const double u = std::log(refinement), v = std::log(error);
         n += 1, x += u, y += v, xx += u * u, xy += u * v;
     }

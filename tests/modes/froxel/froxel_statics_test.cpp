@@ -97,6 +97,7 @@ TEST(FroxelStatics, SettledFogIsAsGoodAsFogFoundAnew) {
         const Snapshot statics = here.snapshot;
         Settings settings;
         settings.of<FroxelSettings>().tile = 4, settings.of<FroxelSettings>().amortize = amortize;
+        settings = as_wide(settings, still_view().size);
         History history;
         std::vector<Scatter> results;
         for (int frame = 0; frame < 24; ++frame) {

@@ -77,7 +77,8 @@ TEST(Froxel, ADarkRoomStaysDark) {
     for (const int tile : {1, 4, 8, 16})
         for (const char* visibility : {"rays", "intervals"}) {
             const Settings settings =
-                with({"froxel.tile=" + std::to_string(tile), std::string("froxel.visibility=") + visibility});
+                as_wide(with({"froxel.tile=" + std::to_string(tile), std::string("froxel.visibility=") + visibility}),
+                        inside.size);
             const double dark =
                 mean_of(scattered(froxels(inside, stage.snapshot, settings), pixel_rays(inside, stage.snapshot)));
             const double bright =
@@ -93,18 +94,21 @@ TEST(Froxel, FogHalfInShadowHasTheReferencesEnergy) {
     const std::vector<Ray> rays = pixel_rays(view, stage.snapshot);
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
     for (const char* visibility : {"rays", "intervals"}) {
-        const Settings settings = with({std::string("froxel.visibility=") + visibility, "froxel.tile=2"});
+        const Settings settings =
+            as_wide(with({std::string("froxel.visibility=") + visibility, "froxel.tile=2"}), view.size);
         const std::vector<Scatter> results = scattered(froxels(view, stage.snapshot, settings), rays);
         EXPECT_NEAR(mean_of(results) / mean_of(truth), 1, 0.01) << visibility;
     }
     // Finer froxels come closer, down to what is left of the light's path through the fog.
     std::vector<double> errors;
     for (const auto& [tile, slices] : {std::pair{4, 16}, {2, 32}, {1, 64}, {1, 256}})
-        errors.push_back(relative_rmse(scattered(froxels(view, stage.snapshot,
-                                                         with({"froxel.tile=" + std::to_string(tile),
-                                                               "froxel.depth_slices=" + std::to_string(slices)})),
-                                                 rays),
-                                       truth));
+        errors.push_back(
+            relative_rmse(scattered(froxels(view, stage.snapshot,
+                                            as_wide(with({"froxel.tile=" + std::to_string(tile),
+                                                          "froxel.depth_slices=" + std::to_string(slices)}),
+                                                    view.size)),
+                                    rays),
+                          truth));
     EXPECT_LT(errors[1], errors[0]);
     EXPECT_LT(errors[2], 0.5 * errors[1]);
     EXPECT_LT(errors[3], 5e-3);
@@ -121,8 +125,9 @@ TEST(Froxel, ALampInsideAFroxelIsAsBrightAsTheReference) {
         const std::vector<Ray> rays = pixel_rays(view, snapshot);
         const double truth = mean_of(marched(snapshot, exact_settings(), rays));
         for (const int exact : {0, 1}) {
-            const Settings settings = with({"froxel.tile=4", "froxel.depth_slices=32",
-                                            exact ? "froxel.visibility=intervals" : "froxel.visibility=rays"});
+            const Settings settings = as_wide(with({"froxel.tile=4", "froxel.depth_slices=32",
+                                                    exact ? "froxel.visibility=intervals" : "froxel.visibility=rays"}),
+                                              view.size);
             const double ratio = mean_of(scattered(froxels(view, snapshot, settings), rays)) / truth;
             EXPECT_NEAR(ratio, 1, 0.05) << exact << " at " << i;
             least[exact] = std::min(least[exact], ratio), most[exact] = std::max(most[exact], ratio);
@@ -201,7 +206,8 @@ TEST(Froxel, OrthographicCamerasAgreeWithTheReference) {
     View view = view_of({0.5f, 0.8f, 3.5f}, {0.5f, 0.4f, 0.5f});
     view.camera.ortho_height = 1.5f;
     const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 8);
-    const Settings settings = with({"froxel.tile=2", "froxel.depth_slices=128", "froxel.shadow_rays=4"});
+    const Settings settings =
+        as_wide(with({"froxel.tile=2", "froxel.depth_slices=128", "froxel.shadow_rays=4"}), view.size);
     const double truth = mean_of(marched(stage.snapshot, sampled_settings(), rays));
     EXPECT_NEAR(mean_of(scattered(froxels(view, stage.snapshot, settings), rays)) / truth, 1, 0.02);
 }
