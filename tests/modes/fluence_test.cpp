@@ -211,7 +211,8 @@ TEST(Fluence, LooksTheSameInFroxels) {
     const View view = view_of({0, 2, 9}, {0, 1.5f, 0});
     const std::vector<Ray> rays = pixel_rays(view, stage.snapshot);
     Settings settings;
-    settings.of<FroxelSettings>().tile = 200, settings.of<FroxelSettings>().depth_slices = 128; // of 2 pixels
+    settings.of<FroxelSettings>().tile = 2, settings.of<FroxelSettings>().depth_slices = 128;
+    settings = as_wide(settings, view.size);
     const auto light = [&](const char* mode, int orders) {
         settings.fluence = grid_settings(orders, 24, 150'000);
         return run_mode(mode, view, stage.snapshot, settings, rays);

@@ -62,9 +62,8 @@ RenderPlan chosen_plan(const Scene& scene, const RenderRequest& request, const S
                       plan.chosen.mode == &main_mode() ? plan.orders : std::nullopt};
     for (const Standing& standing : plan.standings)
         if (standing.mode == &main_mode() && standing.mode != plan.chosen.mode && standing.best) {
-            const Measurement& measured = plan.chosen.choice.measured;
             result.main = std::make_shared<const Choice>(standing.best->choice);
-            result.main_work = standing.best->seconds * measured.sample_work / measured.sample_seconds;
+            result.main_seconds = standing.best->seconds;
         }
     if (globals.quiet) return result;
     say("plan: " + printable(result.certificate, 460));

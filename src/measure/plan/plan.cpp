@@ -43,6 +43,8 @@ std::optional<LimitationGroup> worst_of(const Limitations& limitations) {
 std::string loss(const Contender& best, const Contender& winner, const Goal& goal, const Limitations& limitations) {
     if (best.reaches_goal() && goal.error > 0) {
         const double ratio = best.seconds / winner.seconds;
+        if (ratio < 1 && best.risk == 0)
+            return "reaches the target in " + seconds_text(best.seconds) + "; a part of the other image is done";
         if (ratio < 1 && best.risk > 0) return "may reach the target in " + seconds_text(best.seconds) + ", or miss it";
         return "reaches the target in " + seconds_text(best.seconds) +
                (ratio < 1.1 ? ", about as long" : formatted(", %.*f times as long", ratio < 10 ? 1 : 0, ratio));
@@ -73,7 +75,9 @@ std::vector<Standing> standings_of(std::span<const Mode> modes, const Contest& c
         else if (mode.accuracy != Accuracy::artistic)
             standing.why = contest.best().mode->accuracy == Accuracy::multiple_scattering
                                ? "not tried: its multiple scattering misses the target error"
-                               : "not tried: it has no multiple scattering, which was requested";
+                           : many_orders && !mode.adds_fluence
+                               ? "not tried: it has no multiple scattering, which was requested"
+                               : "not tried: the search was short";
         for (const Contender& contender : contest.contenders)
             if (contender.mode == &mode && (!standing.best || beats(contender, *standing.best, goal)))
                 standing.best = contender;

@@ -14,10 +14,10 @@ FroxelSettings with_tile(FroxelSettings settings, ivec2 size) {
 }
 
 void append_froxel_rows(std::vector<SettingRow>& rows) {
-    rows.push_back(number_row(
-        "froxel.tile", "pixels", 1, 64,
-        "width and height of a froxel in the image; in images of fewer than 360 lines, less: at 180, a quarter",
-        TYNDALL_FIELD(of<FroxelSettings>().tile)));
+    rows.push_back(number_row("froxel.tile", "pixels", 1, 64,
+                              "width and height of a froxel in the image; in images of fewer than 360 lines, less: at "
+                              "180, a quarter; never below 1",
+                              TYNDALL_FIELD(of<FroxelSettings>().tile)));
     rows.push_back(number_row("froxel.depth_slices", "", 1, 4096,
                               "froxels in depth, from the nearest fog in view to the farthest depth needed",
                               TYNDALL_FIELD(of<FroxelSettings>().depth_slices)));

@@ -9,15 +9,15 @@
 
 namespace tyndall {
 namespace {
-// Measured on random scenes: the median time to measure the other modes, relative to the main one's, and how often a
-// mode whose integrator leaves little room for noise misses the target error.
+// Measured on random scenes: the median time to measure the modes of a brief contest, relative to the main one's, and
+// how often a mode whose integrator leaves little room for noise misses the target error.
 constexpr double others_share = 0.05, chance_to_miss = 0.5;
 
 // Predicted times relative to the best so far up to which a scout is worth its cost: any, and one that is cheap.
 constexpr double max_hoped = 0.75, max_hoped_if_cheap = 2;
 
-// A contest that may take less than this share of an image's time is brief.
-constexpr double brief_share = 0.5;
+// A contest that may take less than this share of an image's time is brief: it is for one image or a few.
+constexpr double brief_share = 0.25;
 
 // Times what measuring the main mode took: the longest image that is relied on when time is granted to the others.
 // Where few pixels hold most of the noise, a forecast from two samples may be thousands of times too long.
@@ -102,16 +102,11 @@ std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& sett
     return runners;
 }
 
-// Frees what takes memory and only the winner needs; the main mode may still render its image if the winner fails.
-void release(Choice& choice) {
-    choice.measured.prepared = nullptr;
-    if (from_contest(choice)) choice.scout = choice.rival = nullptr;
-}
-
+// Only the winner keeps its prepared data, which may be large.
 void add(Contender contender, const Goal& goal, Contest& contest) {
     const bool wins = contest.contenders.empty() || beats(contender, contest.best(), goal);
-    if (!wins) release(contender.choice);
-    if (wins && !contest.contenders.empty()) release(contest.contenders[contest.winner].choice);
+    if (!wins) contender.choice.measured.prepared = nullptr;
+    if (wins && !contest.contenders.empty()) contest.contenders[contest.winner].choice.measured.prepared = nullptr;
     contest.contenders.push_back(std::move(contender));
     if (wins) contest.winner = contest.contenders.size() - 1;
 }
@@ -142,7 +137,8 @@ void send_scout(Contender& contender, double best_seconds, double left, const Vi
     hoped.choice.measured.sample_seconds /= std::max(choice.pace, 1.0);
     predict(hoped, goal);
     const bool cheap = scout_samples * hoped.choice.measured.sample_seconds < left;
-    if (!hoped.reaches_goal() || hoped.seconds > (cheap ? max_hoped_if_cheap : max_hoped) * best_seconds) return;
+    const double ahead = hoped.seconds - hoped.done;
+    if (!hoped.reaches_goal() || ahead > (cheap ? max_hoped_if_cheap : max_hoped) * best_seconds) return;
     const std::shared_ptr<const Scout> own =
         make_scout(*contender.mode, view, snapshot, choice.candidate, options, goal.clock, choice.measured.prepared);
     const double noise = noise_of(own->layers).error, main_noise = noise_of(choice.scout->layers).error;
@@ -156,8 +152,6 @@ Contender sole_contender(const Mode& mode, const View& view, const Snapshot& sna
                          const Goal& goal, const FrameOptions& options) {
     Contender alone{&mode, choose(mode, view, snapshot, settings, goal, goal.clock(), options)};
     predict(alone, goal);
-    const std::shared_ptr<const Scout>& scout = alone.choice.scout;
-    if (scout && scout->candidate.name == alone.choice.candidate.name) alone.done = scout->seconds;
     return alone;
 }
 
@@ -175,7 +169,8 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     Choice first = main.choice;
     first.measured.prepared = nullptr;
     const bool brief = share < brief_share && main.reaches_goal() && modes.size() > 1;
-    if (!brief) main.done = 0; // it counts towards one image, and others may follow
+    if (brief && main.choice.scout && main.choice.scout->candidate.name == main.choice.candidate.name)
+        main.done = main.choice.scout->prepare_seconds + main.choice.scout->seconds;
     const double main_seconds = main.seconds_ahead(), begun = goal.clock();
     const double known = std::min(main_seconds, longest_relied_on * (begun - start));
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : known);
@@ -194,16 +189,21 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
             // A finer candidate takes longer than the one before. A mode's first candidate may use up to twice the
             // time, so that one slow mode does not keep the others from being measured; if no mode has been measured
             // yet, the first one always is.
-            const bool worth =
-                runner.next == 0 ? left + allowed > 0 : left * runner.chance(goal.error) > 3 * runner.seconds;
-            if (!contest.contenders.empty() && !worth) {
+            const auto worth = [&] {
+                if (runner.next == 0) return left + allowed > 0;
+                const double chance = contest.best().reaches_goal() ? runner.chance(goal.error) : 1;
+                return left == infinity || left * chance > 3 * runner.seconds;
+            };
+            if (!contest.contenders.empty() && !worth()) {
                 runner.next = runner.candidates.size();
                 continue;
             }
             Contender rival = measure_rival(first, main_seconds, *runner.mode, runner.candidates[runner.next++], goal);
             runner.seconds = goal.clock() - before;
-            if (goal.error > 0 && goal.seconds == 0 && rival.choice.has_integrator && !contest.contenders.empty())
-                send_scout(rival, contest.best().seconds_ahead() - rival.risk, left, view, snapshot, goal, options);
+            if (brief) rival.done = rival.choice.measured.prepare_seconds;
+            if (goal.error > 0 && goal.seconds == 0 && rival.choice.has_integrator)
+                send_scout(rival, contest.contenders.empty() ? infinity : contest.best().seconds_ahead() - rival.risk,
+                           left, view, snapshot, goal, options);
             add(std::move(rival), goal, contest);
             const Contender& last = contest.contenders.back();
             runner.note(last.choice.measured.integrator.bound);

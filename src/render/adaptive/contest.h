@@ -9,7 +9,7 @@ struct Contender {
     Choice choice;
     double samples = 0; // per pixel, to reach the target error; infinite = out of reach
     double seconds = 0; // to prepare and render that image
-    double done = 0;    // of these: a scout that counts towards it
+    double done = 0;    // of these: what is prepared, and a scout that counts towards the image
     double risk = 0;    // expected extra seconds for the main mode's image, in case this one misses the target error
     double error = 0;   // predicted; if the target error is out of reach, the lowest possible
 
@@ -41,8 +41,8 @@ bool beats(const Contender& a, const Contender& b, const Goal& goal);
 // pixels; without a time limit, also from a quick image by each candidate that may win. `view` is the image's;
 // candidates are based on `settings`. Measuring the other modes may take `share` times the time limit or, without one,
 // the main mode's predicted time (at most twenty times what measuring it took); each mode's coarsest candidate may take
-// as much again. If measuring is predicted to take longer, no other mode is measured; if `share` is below a half, only
-// those that are often fastest, unless the main mode misses the goal.
+// as much again, and so may the quick images. If measuring is predicted to take longer, no other mode is measured; if
+// `share` is below a quarter, only those that are often fastest, unless the main mode misses the goal.
 Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapshot& snapshot, const Settings& settings,
                      const Goal& goal, double share, const FrameOptions& options);
 }

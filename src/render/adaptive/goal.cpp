@@ -282,7 +282,8 @@ Choice check_choice(const Choice& choice, const CheckedImage& picture, double un
     const bool hopeless = choice.measured.integrator.bound >= squared_goal;
     const auto chances = [&] {
         if (picture.layers.variance.empty()) return uniform_chances(view, snapshot);
-        return choice.rival ? chances_between(picture.layers, choice.rival->layers) : chances_in(picture.layers);
+        return from_contest(choice) ? chances_between(picture.layers, choice.rival->layers)
+                                    : chances_in(picture.layers);
     };
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
         chances(), salt, choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; },

@@ -13,7 +13,8 @@ struct Goal {
     // rendered if the error cannot be reached without those terms. Null = none were dropped.
     std::shared_ptr<const Settings> wanted{};
     std::optional<OrdersError> orders{}; // already measured for this image; none = not yet
-    double other_work = infinity;        // of the mode that renders the image again if this one misses the error
+    // Of the mode that renders the image again if this one misses the error.
+    double other_work = infinity, other_seconds = infinity;
 };
 
 // Checks of a candidate's image; each but the last may switch to a finer candidate.

@@ -13,7 +13,7 @@ std::shared_ptr<const Scout> make_scout(const Mode& mode, const View& view, cons
                                         const Candidate& candidate, const FrameOptions& options, const Seconds& clock,
                                         std::shared_ptr<const Prepared> prepared) {
     auto scout = std::make_shared<Scout>();
-    scout->mode = &mode, scout->candidate = candidate, scout->seed = view.seed;
+    scout->candidate = candidate, scout->seed = view.seed;
     const View even = uniform_view(view, scout_samples, scout_samples);
     FrameOptions own = options;
     own.progress = {};

@@ -8,7 +8,6 @@ namespace tyndall {
 inline constexpr int scout_samples = 2; // per pixel, independent of each other
 
 struct Scout {
-    const Mode* mode = nullptr;
     Candidate candidate;
     uint32_t seed = 0;
     Layers layers;

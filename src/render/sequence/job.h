@@ -82,7 +82,7 @@ struct RenderPlan {
     std::optional<OrdersError> orders{};    // of the first frame's multiple scattering, if already measured
     std::optional<double> exposure{};       // of PNGs, if it is measured
     std::shared_ptr<const Choice> main{};   // of the main mode for the first frame, if another mode was chosen
-    double main_work = infinity;            // of that image, at the chosen mode's evaluations per second
+    double main_seconds = infinity;         // predicted for that image
 };
 
 // The requested mode and settings. Throws Error (usage) for a mode that is not in the table.

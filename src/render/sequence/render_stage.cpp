@@ -122,7 +122,8 @@ void render(Pipeline& pipeline, FrameJob& work) {
                         work.index == 0 ? plan.choice : nullptr,
                         plan.wanted,
                         work.index == 0 ? plan.orders : std::nullopt,
-                        plan.main_work};
+                        plan.main ? plan.main->work_to(request.target_error) : infinity,
+                        plan.main_seconds};
         options.forecast = [&](double seconds) { say_forecast(pipeline, work, seconds); };
         if (is_part(request.grouping))
             render_own_part(pipeline, options, work);

@@ -32,6 +32,13 @@ struct LitBox {
     }
 };
 
+LitBox lamp_in_box() {
+    LitBox box;
+    box.snapshot =
+        snapshot_of(std::vector{homogeneous_medium(0.1f, Box{vec3(-4), vec3(4)})}, {point_light(vec3(0, 0.5f, 0), 20)});
+    return box;
+}
+
 // A second passes each time it is looked at.
 struct StepClock {
     std::shared_ptr<double> seconds = std::make_shared<double>(0);
@@ -90,8 +97,8 @@ TEST(Contest, NoneIsMeasuredWhereThatWouldTakeMoreThanItMay) {
 }
 
 TEST(Contest, OnlyModesThatOftenWinAreMeasuredInABriefOne) {
-    const LitBox box;
-    const Goal goal{0.001, 0, Quality::preview, steady_seconds};
+    const LitBox box = lamp_in_box();
+    const Goal goal{0.002, 0, Quality::preview, steady_seconds};
     const auto others = [&](double share) {
         std::set<std::string_view> names;
         for (const Contender& contender :
@@ -99,15 +106,23 @@ TEST(Contest, OnlyModesThatOftenWinAreMeasuredInABriefOne) {
             if (contender.mode != &main_mode()) names.insert(contender.mode->name);
         return names;
     };
-    EXPECT_EQ(others(0.4), std::set<std::string_view>{"froxel"});
+    EXPECT_EQ(others(0.2), std::set<std::string_view>{"froxel"});
     EXPECT_GT(others(infinity).size(), 3u);
+}
+
+TEST(Contest, WhatIsAlreadyDoneCountsTowardsOneImage) {
+    const LitBox box;
+    const Goal goal{0.001, 0, Quality::preview, steady_seconds};
+    for (const double share : {0.2, 1.0}) {
+        const Contest contest = hold_contest(modes(), box.view, box.snapshot, box.settings, goal, share, plain);
+        EXPECT_EQ(contest.contenders[0].done > 0, share < 0.25);
+        EXPECT_LT(contest.contenders[0].done, contest.contenders[0].seconds);
+    }
 }
 
 // In the pilot's few tiles, a mode's noise may look many times that of another which is as noisy in the image.
 TEST(Contest, ScoutsPredictTheNoiseOfModesThatMayWin) {
-    LitBox box;
-    box.snapshot =
-        snapshot_of(std::vector{homogeneous_medium(0.1f, Box{vec3(-4), vec3(4)})}, {point_light(vec3(0, 0.5f, 0), 20)});
+    const LitBox box = lamp_in_box();
     const Goal goal{0.005, 0, Quality::preview, StepClock{}};
     const Contest contest = hold_contest(modes(), box.view, box.snapshot, box.settings, goal, infinity, plain);
     const Mode& froxel = find_mode("froxel");
