@@ -23,6 +23,10 @@ constexpr double brief_share = 0.25;
 // Where few pixels hold most of the noise, a forecast from two samples may be thousands of times too long.
 constexpr double longest_relied_on = 20;
 
+// Consecutive candidates without a clear improvement after which a mode's finer ones are not measured: at reduced
+// resolution, two may be about as wrong near a lamp.
+constexpr int max_idle = 2;
+
 // A mode with candidates yet to measure.
 struct Runner {
     const Mode* mode;
@@ -32,7 +36,11 @@ struct Runner {
     double integrator = infinity; // bound of the last candidate's squared integrator error
     int idle = 0;                 // consecutive candidates without a clear improvement
 
-    void note(double error) { idle = error > 0.9 * integrator ? idle + 1 : 0, integrator = error; }
+    void note(double error) {
+        const double ratio = std::sqrt(error / integrator);
+        if (ratio > 0.98 && ratio < 1.02) idle = max_idle; // finer ones differ in nothing that matters here
+        idle = ratio > 0.95 ? idle + 1 : 0, integrator = error;
+    }
     // Estimated probability that a finer candidate reaches an error: each halves it at best.
     double chance(double error) const {
         const double left = static_cast<double>(candidates.size() - next);
@@ -79,7 +87,6 @@ void predict(Contender& contender, const Goal& goal) {
 
 // Whether a mode's finer candidates can still win.
 bool may_improve(const Contender& last, int idle, const Contender& best, const Goal& goal) {
-    constexpr int max_idle = 2; // at reduced resolution, two rungs may be equally wrong near a lamp
     const Measurement& m = last.choice.measured;
     const double least = m.prepare_seconds + m.sample_seconds;
     if (!last.choice.has_integrator) return false;
@@ -192,7 +199,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
             const auto worth = [&] {
                 if (runner.next == 0) return left + allowed > 0;
                 const double chance = contest.best().reaches_goal() ? runner.chance(goal.error) : 1;
-                return left == infinity || left * chance > 3 * runner.seconds;
+                return left == infinity || std::min(left, 0.5 * allowed) * chance > 3 * runner.seconds;
             };
             if (!contest.contenders.empty() && !worth()) {
                 runner.next = runner.candidates.size();
