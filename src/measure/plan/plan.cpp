@@ -44,7 +44,8 @@ std::string loss(const Contender& best, const Contender& winner, const Goal& goa
     if (best.reaches_goal() && goal.error > 0) {
         const double ratio = best.seconds / winner.seconds;
         if (ratio < 1 && best.risk == 0)
-            return "reaches the target in " + seconds_text(best.seconds) + "; a part of the other image is done";
+            return "reaches the target in " + seconds_text(best.seconds) +
+                   "; part of the chosen image is rendered already";
         if (ratio < 1 && best.risk > 0) return "may reach the target in " + seconds_text(best.seconds) + ", or miss it";
         return "reaches the target in " + seconds_text(best.seconds) +
                (ratio < 1.1 ? ", about as long" : formatted(", %.*f times as long", ratio < 10 ? 1 : 0, ratio));

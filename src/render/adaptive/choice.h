@@ -13,7 +13,7 @@ struct Choice {
     double noise_ratio = 1;                  // variance of one sample, relative to the scout's
     double pace = 1;                         // measured time of the whole image over the pilot's prediction
     std::shared_ptr<const Scout> scout = {}; // null = there was no time for one
-    std::shared_ptr<const Scout> rival = {}; // of the main mode, if another mode was chosen in a contest with it
+    bool from_contest = false;               // another mode's, measured beside the main one, whose scout it has
     std::shared_ptr<Pilot> pilot = {};       // the ground truth it was measured against
     double scout_variance = 0;               // of one sample of the scout, on the pilot's tiles
 
@@ -34,9 +34,6 @@ struct Choice {
 
 // Largest share of the target error that the integrator may take up.
 inline constexpr double integrator_share = 0.7;
-
-// Whether another mode than the main one was chosen in a contest.
-inline bool from_contest(const Choice& choice) { return choice.rival != nullptr; }
 
 // Noise that may remain beside the integrator's error. If that alone exceeds the target: the larger of integrator_share
 // of the target and a tenth of the integrator's error.

@@ -38,8 +38,9 @@ struct Runner {
 
     void note(double error) {
         const double ratio = std::sqrt(error / integrator);
-        if (ratio > 0.98 && ratio < 1.02) idle = max_idle; // finer ones differ in nothing that matters here
-        idle = ratio > 0.95 ? idle + 1 : 0, integrator = error;
+        const bool equal = ratio > 0.98 && ratio < 1.02; // finer ones differ in nothing that matters here
+        idle = equal ? max_idle : ratio > 0.95 ? idle + 1 : 0;
+        integrator = error;
     }
     // Estimated probability that a finer candidate reaches an error: each halves it at best.
     double chance(double error) const {
@@ -97,6 +98,15 @@ bool may_improve(const Contender& last, int idle, const Contender& best, const G
     return !(goal.seconds > 0 && (least > 0.5 * goal.seconds || last.error * last.error > 4 * m.integrator.value));
 }
 
+// Whether a mode's next candidate is worth measuring, of `allowed` seconds with `left` to go. A finer candidate takes
+// longer than the one before. A mode's first candidate may use up to twice the time, so that one slow mode does not
+// keep the others from being measured.
+bool is_worthwhile(const Runner& runner, double left, double allowed, const Contender& best, const Goal& goal) {
+    if (runner.next == 0) return left + allowed > 0;
+    const double chance = best.reaches_goal() ? runner.chance(goal.error) : 1;
+    return left == infinity || std::min(left, 0.5 * allowed) * chance > 3 * runner.seconds;
+}
+
 // All modes but the main one; in a `brief` contest only those that often win. Modes whose only error is noise take part
 // only if `noisy`: they are never the fastest.
 std::vector<Runner> runners_of(std::span<const Mode> modes, const Settings& settings, Quality quality, bool brief,
@@ -126,7 +136,8 @@ Contender measure_rival(const Choice& main, double main_seconds, const Mode& mod
     Choice& choice = contender.choice;
     choice.power = choice.has_integrator ? main.power : 1;
     choice.pace = main.pace, choice.measured.sample_seconds *= main.pace;
-    choice.scout = choice.rival = main.scout, choice.pilot = main.pilot, choice.scout_variance = main.scout_variance;
+    choice.scout = main.scout, choice.from_contest = true, choice.pilot = main.pilot,
+    choice.scout_variance = main.scout_variance;
     if (main.scout_variance > 0)
         choice.noise_ratio = std::max(choice.measured.sample.value / main.scout_variance, 1e-6);
     predict(contender, goal);
@@ -193,15 +204,8 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     while (!runners.empty()) {
         for (Runner& runner : runners) {
             const double before = goal.clock(), left = allowed - (before - begun);
-            // A finer candidate takes longer than the one before. A mode's first candidate may use up to twice the
-            // time, so that one slow mode does not keep the others from being measured; if no mode has been measured
-            // yet, the first one always is.
-            const auto worth = [&] {
-                if (runner.next == 0) return left + allowed > 0;
-                const double chance = contest.best().reaches_goal() ? runner.chance(goal.error) : 1;
-                return left == infinity || std::min(left, 0.5 * allowed) * chance > 3 * runner.seconds;
-            };
-            if (!contest.contenders.empty() && !worth()) {
+            const bool is_first = contest.contenders.empty(); // it is always measured
+            if (!is_first && !is_worthwhile(runner, left, allowed, contest.best(), goal)) {
                 runner.next = runner.candidates.size();
                 continue;
             }
@@ -209,8 +213,8 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
             runner.seconds = goal.clock() - before;
             if (brief) rival.done = rival.choice.measured.prepare_seconds;
             if (goal.error > 0 && goal.seconds == 0 && rival.choice.has_integrator)
-                send_scout(rival, contest.contenders.empty() ? infinity : contest.best().seconds_ahead() - rival.risk,
-                           left, view, snapshot, goal, options);
+                send_scout(rival, is_first ? infinity : contest.best().seconds_ahead() - rival.risk, left, view,
+                           snapshot, goal, options);
             add(std::move(rival), goal, contest);
             const Contender& last = contest.contenders.back();
             runner.note(last.choice.measured.integrator.bound);

@@ -282,8 +282,7 @@ Choice check_choice(const Choice& choice, const CheckedImage& picture, double un
     const bool hopeless = choice.measured.integrator.bound >= squared_goal;
     const auto chances = [&] {
         if (picture.layers.variance.empty()) return uniform_chances(view, snapshot);
-        return from_contest(choice) ? chances_between(picture.layers, choice.rival->layers)
-                                    : chances_in(picture.layers);
+        return choice.from_contest ? chances_between(picture.layers, choice.scout->layers) : chances_in(picture.layers);
     };
     const std::shared_ptr<Pilot> pilot = chooser.pilot(
         chances(), salt, choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; },
@@ -320,7 +319,7 @@ Choice check_choice(const Choice& choice, const CheckedImage& picture, double un
 
     const bool missed = integrator.bound + squared_noise > squared_goal;
     if (!missed || goal.error == 0 || goal.seconds > 0 || is_bound || !picture.may_restart) return result;
-    if (from_contest(choice)) return result; // the main mode is likely to be faster than a finer candidate
+    if (choice.from_contest) return result; // the main mode is likely to be faster than a finer candidate
     return finer_than(result, chooser, pilot, std::min(work_left(integrator.bound), goal.other_work));
 }
 }

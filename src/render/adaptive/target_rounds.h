@@ -47,7 +47,7 @@ struct TargetRounds {
 
     // Whether the integrator is checked after the first round: a technique that was preferred to the main one for its
     // speed loses all of it if it misses the target.
-    bool checks_early() const { return choice && !is_timed && from_contest(*choice); }
+    bool checks_early() const { return choice && !is_timed && choice->from_contest; }
 
     double noise_target() const { return choice ? tyndall::noise_target(*choice, goal.error) : goal.error; }
 

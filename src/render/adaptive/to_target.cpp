@@ -205,7 +205,7 @@ bool check_starts_over(TargetRounds& rounds, Rendering& rendering, bool is_done,
     const double times = after.times_to(goal.error, after.measured.integrator.bound, checked.noise);
     const double left = (times * checked.samples - checked.done) * after.measured.sample_work;
     const double seconds_left = left * after.measured.sample_seconds / after.measured.sample_work;
-    const bool worth = !from_contest(after) || rounds.is_timed || seconds_left < goal.other_seconds;
+    const bool worth = !after.from_contest || rounds.is_timed || seconds_left < goal.other_seconds;
     const bool lacks = !is_done || (rounds.freedom > 0 && !judge(rounds, image.layers, image.stats));
     if (goal.error > 0 && worth && lacks)
         render_rounds(rounds, rendering, next_round(rounds, image.stats), max_rounds, image);

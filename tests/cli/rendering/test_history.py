@@ -83,7 +83,8 @@ class Farm(History):
 class Noise(History):
     def test_history_is_closer_to_the_truth(self):
         # Froxels are jittered once there is history, by a pattern of five frames, and have no samples of their own: one
-        # frame of history against sixteen, which end on the same of the five, both against a march.
+        # frame of history against sixteen, which end on the same of the five, both against a march. In images this
+        # small, a tile of 64 is 2 pixels wide.
         still = self.film(wind=0)
         cases = [("froxel", "march", "froxel.tile=64", 1, 16), ("shadow-map", "shadow-map", "shadow_map.steps=6", 0, 16)]
         for mode, truth, row, short, long in cases:

@@ -161,7 +161,7 @@ TEST(Contest, AModeThatMissesTheTargetIsStoppedEarly) {
     wrong.accuracy = main_mode().accuracy, wrong.rungs = main_mode().rungs;
     Choice choice = choose(main_mode(), box.view, box.snapshot, box.settings, goal, goal.clock(), plain);
     Scout scout = *make_scout(wrong, box.view, box.snapshot, choice.candidate, plain, goal.clock);
-    choice.scout = choice.rival = std::make_shared<const Scout>(scout);
+    choice.scout = std::make_shared<const Scout>(scout), choice.from_contest = true;
     choice.has_integrator = true, choice.is_truth = false;
     choice.measured.integrator = {}, choice.measured.prepared = nullptr;
     goal.choice = std::make_shared<const Choice>(choice);
