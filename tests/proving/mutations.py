@@ -49,7 +49,7 @@ FAULTS = [
           "const auto square = [](vec3 value) { return 1 / (1e-6 + channel_mean(value * value)); };"),
     Fault("tiles-without-weights", ADAPTIVE + "tile_chances.cpp", "drawn.push_back({corner(i), chance, 1 / chance});",
           "drawn.push_back({corner(i), chance, 1});"),
-    Fault("check-with-the-pilots-samples", ADAPTIVE + "goal.cpp", "chances(), salt,", "chances(), 0 * salt,"),
+    Fault("check-with-the-pilots-samples", ADAPTIVE + "check.cpp", "chances(), salt,", "chances(), 0 * salt,"),
     Fault("rounds-of-the-same-samples", ADAPTIVE + "target_rounds.h",
           "if (numbers > 0) result.seed = hash(view.seed, static_cast<uint32_t>(numbers));", ""),
     Fault("integrator-left-out", "src/render/frame/frame.cpp", "integrator ? integrator->error : none", "none"),

@@ -1,6 +1,7 @@
 #include "modes/froxel/limitations.h"
 
 #include "modes/area_light_limitations.h"
+#include "modes/froxel/beams/beam_shadows.h"
 #include "modes/froxel/beams/beams.h"
 #include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"
@@ -79,6 +80,8 @@ void add_light(const View& view, const Light& light, const Snapshot& snapshot, c
         add(fine ? Severity::info : Severity::degraded, limitation::coarse_shafts, {size.across, size.deep});
     if (shadows && is_soft(light) && settings.shadow_rays == 1 && !by_rays.exact)
         add(Severity::degraded, limitation::hard_shadows);
+    if (shadows && is_soft(light) && by_rays.exact)
+        add(Severity::info, limitation::few_lamp_points, {static_cast<double>(lamp_points(light))});
     const float away = glm::distance(light.position, snapshot.bounds.center());
     const float across = by_rays.all ? 0 : size.coarse() / std::max(away, size.coarse());
     if (light.filter) add_blurred_filter(light, std::max(filter_point_angle(light), across), limitations);

@@ -11,6 +11,10 @@ namespace limitation {
 inline constexpr LimitationKind coarse_shafts{"coarse_shafts",
                                               "shafts are no finer than froxels, about {} m wide and {} m deep here: "
                                               "light leaks through thinner walls, and thinner gaps are lost"};
+inline constexpr LimitationKind few_lamp_points{
+    "few_lamp_points",
+    "its soft shadows in the fog are the mean of hard ones from {n} points on it: penumbras have steps, "
+    "and fog beside a surface that cuts through it is too bright or too dark"};
 inline constexpr LimitationKind flat_glow{"flat_glow", "no detail in the glow within {} m of the lamp"};
 inline constexpr LimitationKind deep_froxels{"deep_froxels",
                                              "froxels are up to {} optical depths deep: light is averaged within each"};

@@ -42,6 +42,6 @@ double noise_target(const Choice& choice, double error);
 // Whether the integrator's error leaves enough of the target error for noise.
 bool leaves_room(const Choice& choice, double error);
 
-// Predicted seconds to check the integrator on a finished image (render/adaptive/goal.h: checked).
+// Predicted seconds to check the integrator on a finished image (render/adaptive/check.h).
 double check_seconds(const Choice& choice);
 }

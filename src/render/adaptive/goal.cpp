@@ -2,21 +2,18 @@
 
 #include "base/clock.h"
 #include "modes/mode.h"
+#include "render/adaptive/chooser.h"
 #include "render/adaptive/orders.h"
 
 #include <algorithm>
 #include <list>
-#include <optional>
 #include <ranges>
 
 namespace tyndall {
 namespace {
 // Shares of the time limit that measuring may take.
 constexpr double truth_share = 0.1, measuring_share = 0.4, scout_share = 0.2;
-constexpr double truth_work_share = 0.2;  // of the image's work, without a time limit
 constexpr double max_orders_share = 0.15; // of the time limit, to measure multiple scattering
-constexpr double max_doubt_share = 0.25;  // of the main mode's work, to measure another mode's image further
-constexpr int truth_marches = 64;         // nodes along a ray from which the ground truth marches to each light
 
 // Whether a finer candidate is no more accurate than the one before.
 bool gains_nothing(const Choice& next, const Choice& before) {
@@ -27,94 +24,6 @@ bool reaches(const Choice& choice, double samples, double error) {
     const double noise = choice.expected(samples) - choice.measured.integrator.value;
     return leaves_room(choice, error) && choice.measured.integrator.bound + noise <= error * error;
 }
-
-// Whether `wanted` lies within the uncertainty of a squared error: above its lower bound but below its upper one.
-bool is_undecided(const SquaredError& error, double wanted) {
-    return error.bound > wanted && 2 * error.value - error.bound <= wanted;
-}
-
-// Whether measuring an integrator's error further is likely to cost less than it saves of `least`, the work otherwise
-// needed. Repeating the measurement so far costs `again`; `to_goal` is the remaining work for a given squared error. If
-// the uncertainty is due to noise, bound - value falls as 1 / passes, since means over passes are multiplied; if it is
-// due to few tiles, it falls like a standard error. The value itself may turn out smaller: a measurement that could
-// save many times its cost is worthwhile.
-bool worth_seeing(const SquaredError& integrator, const Pilot& pilot, double least, double again,
-                  const std::function<double(double)>& to_goal) {
-    constexpr double much_more = 20;
-    const auto& [value, bound, by_noise] = integrator;
-    const double smallest = to_goal(std::max(2 * value - bound, 0.0));
-    if (smallest == infinity) return false;
-    if (least - smallest >= much_more * again) return true;
-    const int seen = by_noise ? pilot.passes : pilot.drawings, all = by_noise ? max_passes : max_drawings;
-    for (int count = by_noise ? 2 * seen : seen + 1; count <= all; count += by_noise ? count : 1) {
-        const double times = static_cast<double>(count) / seen, cost = (times - 1) * again;
-        if (cost >= least) return false;
-        if (least - to_goal(value + (bound - value) / (by_noise ? times : std::sqrt(times))) > cost) return true;
-    }
-    return false;
-}
-
-bool same_settings(const Settings& a, const Settings& b) {
-    return std::ranges::all_of(setting_rows(), [&](const SettingRow& row) { return row.get(a) == row.get(b); });
-}
-
-// Inputs for choosing among a mode's candidates.
-struct Chooser {
-    const Mode& mode;
-    const View& view;
-    const Snapshot& snapshot;
-    const Settings& settings;
-    const Goal& goal;
-    const FrameOptions& options;
-    std::vector<Candidate> candidates = candidates_of(mode, settings, goal.quality);
-    bool systematic = has_integrator(mode);
-    Settings truth = systematic ? truth_settings(goal.wanted ? *goal.wanted : settings) : settings;
-
-    // `work`: of the image that the pilot is for.
-    std::shared_ptr<Pilot> pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready,
-                                 std::function<bool()> stop, double work) const {
-        if (goal.seconds == 0) stop = {};
-        // Modes that omit effects may be wrong in only a few places: they get all the tiles of a drawing.
-        if (goal.seconds > 0 || mode.name != main_mode().name) work = infinity;
-        Settings quick = truth; // with the same expected value
-        quick.march.light_marches = truth_marches;
-        return std::make_shared<Pilot>(make_pilot(systematic ? main_mode() : mode, view, snapshot,
-                                                  systematic ? &quick : nullptr, std::move(chances), salt, options,
-                                                  std::move(ready), std::move(stop), truth_work_share * work));
-    }
-
-    // Predicted work to reach the error with the scout's candidate if that had no integration error.
-    double work_ahead(const Scout& scout) const {
-        if (!(goal.error > 0)) return infinity;
-        const AllotLimits limits{goal.error * goal.error, infinity};
-        const double rays = allot(scout.layers, scout_samples, limits, 1, scout_samples).rays;
-        return scout.work() * std::max(rays / static_cast<double>(scout.stats.camera_rays), 1.0);
-    }
-
-    PilotRun start_run(const Candidate& candidate, const Scout* scout) const {
-        const bool scouted = scout && scout->candidate.name == candidate.name;
-        PilotRun run{mode, candidate.settings, scouted ? scout->prepared : nullptr};
-        if (scouted) run.prepare_seconds = scout->prepare_seconds;
-        return run;
-    }
-
-    // Measures a candidate. `before` is one already measured, if any: its variance power and pace are reused.
-    Choice choice(const Candidate& candidate, PilotRun& run, std::shared_ptr<Pilot> pilot, const Choice* before,
-                  std::shared_ptr<const Scout> scout) const {
-        const bool scouted = scout && scout->candidate.name == candidate.name;
-        Choice choice{candidate, measure(*pilot, run, goal.clock), systematic};
-        choice.scout = scout, choice.power = before ? before->power : 1, choice.pace = before ? before->pace : 1;
-        choice.is_truth = mode.name == main_mode().name && same_settings(candidate.settings, truth);
-        if (choice.is_truth) choice.measured.integrator = {};
-        if (scouted) choice.pace = scout->seconds / scout_samples / std::max(choice.measured.sample_seconds, 1e-9);
-        choice.measured.sample_seconds *= choice.pace;
-        if (systematic && !before)
-            choice.power = variance_power(*pilot, mode, candidate.settings, *choice.measured.prepared);
-        choice.pilot = std::move(pilot);
-        choice.scout_variance = before ? before->scout_variance : choice.measured.sample.value;
-        return choice;
-    }
-};
 
 // Renders a scout unless the mode's only error is noise or the scout would take too much of the time limit. `sample`
 // receives the variance of one sample if that decision required measuring it.
@@ -249,77 +158,5 @@ Choice choose(const Mode& mode, const View& view, const Snapshot& snapshot, cons
         if (noisy || now + 3 * (now - begun) > measuring_share * goal.seconds) break;
     }
     return std::move(*best);
-}
-
-namespace {
-// A finer candidate, if starting over with it takes less work than `least`, among those up to the first that leaves
-// room for noise; otherwise the choice itself.
-Choice finer_than(const Choice& choice, const Chooser& chooser, const std::shared_ptr<Pilot>& pilot, double least) {
-    const double error = chooser.goal.error;
-    Choice result = choice;
-    auto next = std::ranges::find(chooser.candidates, choice.candidate.name, &Candidate::name);
-    while (next != chooser.candidates.end() && ++next != chooser.candidates.end()) {
-        PilotRun run = chooser.start_run(*next, choice.scout.get());
-        Choice finer = chooser.choice(*next, run, pilot, &choice, choice.scout);
-        const bool room = leaves_room(finer, error);
-        const double work = finer.work_to(error);
-        if (work < least || (least == infinity && room)) least = work, result = std::move(finer);
-        if (room) break;
-    }
-    return result;
-}
-}
-
-Choice check_choice(const Choice& choice, const CheckedImage& picture, double until, const Mode& mode, const View& view,
-                    const Snapshot& snapshot, const Settings& settings, const Goal& goal, uint32_t salt,
-                    const FrameOptions& options) {
-    if (!choice.has_integrator || choice.is_truth) return choice;
-    const Chooser chooser{mode, view, snapshot, settings, goal, options};
-    const bool is_bound = overrides_candidates(mode, settings, goal.quality);
-    const double squared_goal = goal.error * goal.error, squared_noise = picture.noise.bound * picture.noise.bound;
-    // If the integrator alone misses the goal, measure by how much on all the tiles of a drawing, however few samples
-    // the image has.
-    const bool hopeless = choice.measured.integrator.bound >= squared_goal;
-    const auto chances = [&] {
-        if (picture.layers.variance.empty()) return uniform_chances(view, snapshot);
-        return choice.from_contest ? chances_between(picture.layers, choice.scout->layers) : chances_in(picture.layers);
-    };
-    const std::shared_ptr<Pilot> pilot = chooser.pilot(
-        chances(), salt, choice.pilot ? choice.pilot->prepared : nullptr, [&] { return goal.clock() > until; },
-        hopeless ? double{infinity} : picture.samples * choice.measured.sample_work);
-    pilot->stop = {}; // it captures locals of this call
-    Choice result = choice;
-    PilotRun run{mode, choice.candidate.settings, choice.measured.prepared};
-    SquaredError& integrator = result.measured.integrator;
-    const Measurement first = measure(*pilot, run, goal.clock);
-    integrator = first.integrator;
-
-    const double begun = pilot->cost.work, work = picture.samples * first.sample_work;
-    const auto work_left = [&](double squared_integrator) {
-        const double all = work * choice.times_to(goal.error, squared_integrator, picture.noise);
-        return std::max(all - picture.done * first.sample_work, 0.0);
-    };
-    // If in doubt, measure further as long as that takes less work than the alternatives: more samples, a finer
-    // candidate of the main mode (about the work of this one), or a share of the work of another mode's image.
-    const auto see_more = [&] {
-        const bool has_finer = mode.name == main_mode().name && !is_bound;
-        double least = std::min(work_left(integrator.bound), max_doubt_share * goal.other_work);
-        if (has_finer) least = std::min(least, work);
-        const bool by_noise = pilot->can_grow(integrator.by_noise) ? integrator.by_noise : !integrator.by_noise;
-        least -= pilot->cost.work - begun;
-        if (!pilot->can_grow(by_noise) || !worth_seeing(integrator, *pilot, least, pilot->cost.work, work_left))
-            return false;
-        grow(*pilot, by_noise);
-        return true;
-    };
-    const auto is_in_time = [&] { return goal.seconds == 0 || goal.clock() + pilot->cost.seconds < until; };
-    while (squared_noise < squared_goal && is_undecided(integrator, squared_goal - squared_noise) && is_in_time() &&
-           see_more())
-        integrator = measure(*pilot, run, goal.clock).integrator;
-
-    const bool missed = integrator.bound + squared_noise > squared_goal;
-    if (!missed || goal.error == 0 || goal.seconds > 0 || is_bound || !picture.may_restart) return result;
-    if (choice.from_contest) return result; // the main mode is likely to be faster than a finer candidate
-    return finer_than(result, chooser, pilot, std::min(work_left(integrator.bound), goal.other_work));
 }
 }

@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "base/random.h"
 #include "modes/mode.h"
+#include "render/adaptive/check.h"
 #include "render/adaptive/orders.h"
 #include "render/adaptive/shutter_error.h"
 #include "render/adaptive/to_target.h"

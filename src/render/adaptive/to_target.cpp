@@ -1,6 +1,7 @@
 #include "render/adaptive/to_target.h"
 
 #include "base/error.h"
+#include "render/adaptive/check.h"
 #include "render/adaptive/orders.h"
 #include "render/adaptive/shutter_error.h"
 #include "render/adaptive/target_rounds.h"

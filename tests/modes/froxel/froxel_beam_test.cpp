@@ -1,10 +1,12 @@
 // Beams of spots in the froxel cache: against quadrature of the closed form, and against the exact march.
 #include "modes/froxel/froxel_fixtures.h"
+#include "support/limitations.h"
 #include "support/threads.h"
 
 #include "base/random.h"
 #include "integrate/equi_angular.h"
 #include "modes/froxel/beams/beam_shadows.h"
+#include "modes/froxel/limitations.h"
 #include "modes/history.h"
 #include "scene/light_reach.h"
 #include "trace/lights/light_ray.h"
@@ -181,6 +183,9 @@ TEST(FroxelBeam, ShadowsOfALampWithARadiusAreSoft) {
         const std::vector<Scatter> truth = marched(many.snapshot, exact_settings(), rays);
         const auto error = [&](const Light& light) {
             const TestScene stage = make_scene({fog}, {light}, slab, vec3(0));
+            EXPECT_EQ(has_limitation(find_mode("froxel").limitations(view, stage.snapshot, Settings{}),
+                                     limitation::few_lamp_points),
+                      light.radius > 0);
             return relative_rmse(scattered(froxels(view, stage.snapshot, {}), rays), truth);
         };
         EXPECT_LT(error(soft), 0.13);

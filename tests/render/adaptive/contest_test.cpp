@@ -98,7 +98,7 @@ TEST(Contest, NoneIsMeasuredWhereThatWouldTakeMoreThanItMay) {
 
 TEST(Contest, OnlyModesThatOftenWinAreMeasuredInABriefOne) {
     const LitBox box = lamp_in_box();
-    const Goal goal{0.002, 0, Quality::preview, steady_seconds};
+    const Goal goal{0.002, 0, Quality::preview, StepClock{}};
     const auto others = [&](double share) {
         std::set<std::string_view> names;
         for (const Contender& contender :

@@ -2,6 +2,7 @@
 #include "base/random.h"
 #include "integrate/ray_batch.h"
 #include "modes/mode.h"
+#include "render/adaptive/check.h"
 #include "render/adaptive/to_target.h"
 #include "render/frame/noise_fixtures.h"
 #include "scene/camera.h"

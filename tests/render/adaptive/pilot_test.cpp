@@ -2,15 +2,14 @@
 #include "base/random.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "render/adaptive/check.h"
 #include "render/adaptive/scout.h"
+#include "render/adaptive/to_target.h"
 #include "scene/light.h"
 #include "support/tiny_scenes.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
-
-#include "modes/mode.h"
-#include "render/adaptive/to_target.h"
 
 #include <gtest/gtest.h>
 
