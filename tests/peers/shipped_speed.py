@@ -1,10 +1,9 @@
 """Time to an error of scenes that ship, beside Cycles: python shipped_speed.py --tyndall build/release/tyndall (README.md)
-Fog of recipes is baked, and both load the same .vdb. Samples are doubled, the two take turns, until each is within `--error` of
-its own converged picture, by `tyndall compare`. Times are processor seconds: of tyndall's whole process, of Cycles' render
+Fog of recipes is baked, and both load the same .vdb. Samples are doubled, the two take turns, until each is within `--error`, by
+`tyndall compare`. Times are processor seconds: of tyndall's whole process, of Cycles' render
 call alone."""
 import argparse
 import json
-import math
 import pathlib
 import resource
 import shlex
@@ -50,9 +49,8 @@ def compared(program, a, b):
 
 
 class Tyndall:
-    """March pictures of ever more samples. What they are compared with has final quality and `more` samples, and its noise counts
-    as error."""
-    more, noise = 4, 1
+    """March pictures of ever more samples. What they are compared with has final quality and four times the samples, and its noise
+    counts as error."""
 
     def __init__(self, quality, scene, frame, args, folder):
         self.quality, self.scene, self.frame, self.args, self.folder = quality, scene, frame, args, folder
@@ -67,36 +65,41 @@ class Tyndall:
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         return picture, after.ru_utime + after.ru_stime - used.ru_utime - used.ru_stime
 
+    def rung(self, samples):
+        """Samples, processor seconds and error of a picture."""
+        picture, seconds = self.render(samples, 1)
+        better, _ = self.render(4 * samples, 1000, better=True)
+        return samples, seconds, compared(self.args.tyndall, picture, better)
+
 
 class Cycles:
-    """The same scene; light scattered once, without bias: two pictures of other random numbers differ by the noise of both."""
-    more, noise = 1, math.sqrt(2)
+    """The same scene; light scattered once, without bias."""
 
     def __init__(self, scene, frame, args, folder):
         self.scene, self.frame, self.args, self.folder = scene, frame, args, folder
 
-    def render(self, samples, seed, better=False):
+    def render(self, samples, seed):
         output = str(self.folder / f"cycles_{self.scene.stem}_{samples}_")
         run_blender({"scene": str(self.scene), "frame": self.frame, "size": list(map(int, self.args.res.split("x"))),
                      "samples": samples, "threads": self.args.threads, "seeds": [seed], "sampling": self.args.sampling,
                      "output": output}, self.folder, "shipped_cycles.py")
         return pathlib.Path(f"{output}{seed}.exr"), float(pathlib.Path(f"{output}{seed}.seconds").read_text().split()[1])
 
+    def rung(self, samples):
+        """Of the mean of two pictures with other random numbers: its error is half of their difference."""
+        (one, first), (other, second) = [self.render(samples, seed) for seed in (1, 1000)]
+        return 2 * samples, first + second, compared(self.args.tyndall, one, other) / 2
 
-def ladder(renderer, args):
-    """Yields (samples, processor seconds, error) for 1, 2, 4, ... samples. A picture's error is that against another with random
-    numbers of its own."""
-    samples = args.first
+
+def ladder(renderer, samples):
     while True:
-        picture, seconds = renderer.render(samples, 1)
-        better, _ = renderer.render(renderer.more * samples, 1000, better=True)
-        yield samples, seconds, compared(args.tyndall, picture, better) / renderer.noise
+        yield renderer.rung(samples)
         samples *= 2
 
 
 def climb(renderers, args):
     """Doubles samples of each in turn until all are within the error or have had their time; prints a row for each rung."""
-    rungs = {name: ladder(renderer, args) for name, renderer in renderers.items()}
+    rungs = {name: ladder(renderer, args.first) for name, renderer in renderers.items()}
     reached = {}
     while rungs:
         for name in list(rungs):
@@ -114,7 +117,7 @@ def main():
     parser.add_argument("--renderers", default="preview,final,cycles", help="tyndall's qualities, and cycles")
     parser.add_argument("--res", default="640x360", help="of the picture, pixels")
     parser.add_argument("--error", type=float, default=0.05, help="the error to reach: RMSE over the mean")
-    parser.add_argument("--first", type=int, default=1, help="samples to begin with")
+    parser.add_argument("--first", type=int, default=1, help="samples of a picture to begin with")
     parser.add_argument("--limit", type=float, default=1200, help="processor seconds after which a renderer stops")
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--options", default="--mode march --orders 1", help="of tyndall")
