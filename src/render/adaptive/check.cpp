@@ -63,15 +63,17 @@ Choice check_choice(const Choice& choice, const CheckedImage& picture, double un
         return std::max(all - picture.done * first.sample_work, 0.0);
     };
     // If in doubt, measure further as long as that takes less work than the alternatives: more samples, a finer
-    // candidate of the main mode (about the work of this one), or a share of the work of another mode's image.
+    // candidate of the main mode (about the work of this one), or a share of the work of another mode's image. If the
+    // doubt is due to noise, it would be no smaller about a finer candidate.
     const auto see_more = [&] {
-        const bool has_finer = mode.name == main_mode().name && !is_bound;
+        const double spent = pilot->cost.work - begun, again = pilot->cost.work;
         double least = std::min(work_left(integrator.bound), max_doubt_share * goal.other_work);
-        if (has_finer) least = std::min(least, work);
+        const bool or_finer = mode.name == main_mode().name && !is_bound && work < least;
+        if (or_finer) least = work;
         const bool by_noise = pilot->can_grow(integrator.by_noise) ? integrator.by_noise : !integrator.by_noise;
-        least -= pilot->cost.work - begun;
-        if (!pilot->can_grow(by_noise) || !worth_seeing(integrator, *pilot, least, pilot->cost.work, work_left))
-            return false;
+        const bool worth = or_finer && by_noise ? spent + again <= work
+                                                : worth_seeing(integrator, *pilot, least - spent, again, work_left);
+        if (!pilot->can_grow(by_noise) || !worth) return false;
         grow(*pilot, by_noise);
         return true;
     };
