@@ -54,7 +54,7 @@ FAULTS = [
           "if (numbers > 0) result.seed = hash(view.seed, static_cast<uint32_t>(numbers));", ""),
     Fault("integrator-left-out", "src/render/frame/frame.cpp", "integrator ? integrator->error : none", "none"),
     Fault("orders-left-out", "src/render/frame/frame.cpp", "orders ? orders->pixels : none", "none"),
-    Fault("orders-of-one-product", ADAPTIVE + "orders.cpp", "channel_mean(of.sums[i] * of.sums[i] - of.squares[i])", "channel_mean(of.sums[i] * of.sums[i])"),
+    Fault("orders-of-one-product", ADAPTIVE + "errors/orders.cpp", "channel_mean(of.sums[i] * of.sums[i] - of.squares[i])", "channel_mean(of.sums[i] * of.sums[i])"),
     Fault("planning-not-counted", ADAPTIVE + "to_target.cpp", "stats.goal_seconds = goal.clock() - rounds.start;",
           "stats.goal_seconds = stats.render_seconds;"),
     Fault("loading-not-counted", "src/render/sequence/render_stage.cpp",

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "base/io/frames.h"
 #include "modes/mode.h"
-#include "render/adaptive/orders.h"
+#include "render/adaptive/errors/orders.h"
 #include "render/adaptive/planned.h"
 #include "render/parts/plan_file.h"
 #include "render/sequence/provenance.h"

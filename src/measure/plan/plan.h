@@ -2,7 +2,7 @@
 #pragma once
 #include "measure/plan/terms.h"
 #include "render/adaptive/contest.h"
-#include "render/adaptive/orders.h"
+#include "render/adaptive/errors/orders.h"
 
 namespace tyndall {
 // How one mode did in the contest.

@@ -63,8 +63,8 @@ Choice check_choice(const Choice& choice, const CheckedImage& picture, double un
         return std::max(all - picture.done * first.sample_work, 0.0);
     };
     // If in doubt, measure further as long as that takes less work than the alternatives: more samples, a finer
-    // candidate of the main mode (about the work of this one), or a share of the work of another mode's image. If the
-    // doubt is due to noise, it would be no smaller about a finer candidate.
+    // candidate of the main mode (about the work of this one), or a share of the work of another mode's image. Noise
+    // would leave as much doubt about a finer candidate, so then only that limit counts, not what measuring may save.
     const auto see_more = [&] {
         const double spent = pilot->cost.work - begun, again = pilot->cost.work;
         double least = std::min(work_left(integrator.bound), max_doubt_share * goal.other_work);

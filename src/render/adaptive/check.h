@@ -1,4 +1,4 @@
-// Checks the integrator's error of an image with samples of their own.
+// Measures the integrator's error of an image again, with independent samples.
 #pragma once
 #include "render/adaptive/goal.h"
 

@@ -3,7 +3,7 @@
 #include "base/clock.h"
 #include "modes/mode.h"
 #include "render/adaptive/chooser.h"
-#include "render/adaptive/orders.h"
+#include "render/adaptive/errors/orders.h"
 
 #include <algorithm>
 #include <list>

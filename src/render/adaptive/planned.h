@@ -1,8 +1,8 @@
 // Sample counts fixed before a frame is rendered, so that every machine that renders a part of it takes the same; and
 // the error of the finished frame.
 #pragma once
+#include "render/adaptive/errors/planned_error.h"
 #include "render/adaptive/goal.h"
-#include "render/adaptive/planned_error.h"
 
 namespace tyndall {
 struct PlannedSamples {

@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "render/adaptive/check.h"
-#include "render/adaptive/orders.h"
-#include "render/adaptive/shutter_error.h"
+#include "render/adaptive/errors/orders.h"
+#include "render/adaptive/errors/shutter_error.h"
 #include "render/adaptive/target_rounds.h"
 #include "render/frame/layers.h"
 #include "trace/transmittance/light_depth.h"

@@ -2,7 +2,7 @@
 #pragma once
 #include "base/io/file_sequence.h"
 #include "modes/settings.h"
-#include "render/adaptive/planned_error.h"
+#include "render/adaptive/errors/planned_error.h"
 #include "render/frame/layers.h"
 #include "render/image/exr.h"
 #include "render/image/view_transform.h"

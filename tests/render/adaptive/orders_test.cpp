@@ -2,7 +2,7 @@
 #include "base/random.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
-#include "render/adaptive/orders.h"
+#include "render/adaptive/errors/orders.h"
 #include "render/adaptive/to_target.h"
 #include "render/frame/layers.h"
 #include "scene/light.h"

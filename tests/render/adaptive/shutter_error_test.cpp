@@ -1,7 +1,7 @@
 // What few moments of motion blur are off by, for light that depends on time alone: closed forms.
 #include "modes/mode.h"
 #include "modes/settings.h"
-#include "render/adaptive/shutter_error.h"
+#include "render/adaptive/errors/shutter_error.h"
 #include "render/adaptive/to_target.h"
 #include "render/fixtures.h"
 #include "scene/scene.h"

@@ -1,4 +1,4 @@
-#include "render/adaptive/orders.h"
+#include "render/adaptive/errors/orders.h"
 
 #include "base/error.h"
 #include "base/parallel.h"

@@ -1,4 +1,4 @@
-#include "render/adaptive/shutter_error.h"
+#include "render/adaptive/errors/shutter_error.h"
 
 #include "base/clock.h"
 #include "trace/snapshot.h"
