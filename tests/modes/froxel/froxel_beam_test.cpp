@@ -56,7 +56,7 @@ void expect_own_integrals(Light lamp, float g, const char* lookup, float share, 
     const Medium fog = homogeneous_medium(0.2f, {vec3(-30), vec3(30)}, Phase{PhaseKind::henyey_greenstein, g});
     lamp.range = 6;
     const Snapshot snapshot = snapshot_of({fog}, {lamp});
-    const Settings settings = with({"terms.light=off", std::string("froxel.lookup=") + lookup});
+    const Settings settings = as_wide(with({"terms.light=off", std::string("froxel.lookup=") + lookup}), view.size);
     const std::vector<Ray> rays = pixel_rays(view, snapshot, 20);
     const std::vector<Scatter> results = scattered(froxels(view, snapshot, settings), rays);
     double most = 0, mean = 0;
@@ -106,8 +106,8 @@ TEST(FroxelBeam, ShadowsAndSeveralFogsAreThoseOfTheReference) {
     const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
     for (const char* way : {"froxel.visibility=intervals", "froxel.visibility=rays", "froxel.lookup=tricubic"}) {
         // What is left is the edge of the slab's shadow, as wide as a froxel.
-        const double error = relative_rmse(scattered(froxels(view, stage.snapshot, with({way})), rays), truth);
-        EXPECT_LT(error, 0.12) << way;
+        const Settings wide = as_wide(with({way}), view.size);
+        EXPECT_LT(relative_rmse(scattered(froxels(view, stage.snapshot, wide), rays), truth), 0.12) << way;
     }
     const Settings fine = with({"froxel.tile=1", "froxel.depth_slices=256"});
     EXPECT_LT(relative_rmse(scattered(froxels(view, stage.snapshot, fine), rays), truth), 0.02);
@@ -124,7 +124,8 @@ TEST(FroxelBeam, LampsInFogOfClosedFormAreExact) {
         const std::vector<Ray> rays = pixel_rays(view, stage.snapshot, 12);
         const std::vector<Scatter> truth = marched(stage.snapshot, exact_settings(), rays);
         const auto error = [&](const char* way) {
-            return relative_rmse(scattered(froxels(view, stage.snapshot, with({way})), rays), truth);
+            return relative_rmse(scattered(froxels(view, stage.snapshot, as_wide(with({way}), view.size)), rays),
+                                 truth);
         };
         EXPECT_LT(error("froxel.lookup=trilinear"), 0.015);
         EXPECT_LT(error("froxel.lookup=tricubic"), 0.015);
