@@ -77,7 +77,10 @@ def prove(seed, options):
             used += run.processor
         if row["stated"] is None:
             return row | {"refused": own[0].said}
-        row["layers"] = {layer: differences([run.layers for run in own], truths, layer) for layer in LAYERS}
+        row["layers"] = {layer: differences([run.layers for run in own], truths, layer) for layer in LAYERS
+                         if any(truth[layer].any() for truth in truths)}
+        if not row["layers"]:
+            return row | {"refused": "no light"}
         worst = max(row["layers"].values(), key=lambda layer: layer["pixels"])
         low = max(max(layer["pixels_low"], abs(layer["mean"]) - 2 * layer["mean_error"]) for layer in row["layers"].values())
         # a stated amount is too small where the measurement says so beyond its own error

@@ -29,11 +29,11 @@ struct SweptTile {
     size_t first = 0, count = 0;
 };
 
-// Result of one pass over the pixels: per pixel and layer the mode's light minus path tracing's, and path tracing's
-// mean.
+// Result of one pass over the pixels, per pixel and layer: the mode's light minus path tracing's, and path tracing's
+// mean over R, G and B.
 struct SweepPass {
     std::vector<std::array<vec3, layer_count>> differences;
-    std::array<double, layer_count> truth{};
+    std::vector<std::array<float, layer_count>> truths;
 };
 
 // All tiles of the image, or a stratified sample of them; every pass traces rays through the same pixels.
@@ -113,8 +113,7 @@ void add_pass(const Compared& compared, const View& given, const FrameOptions& o
     View view = given;
     view.seed = hash(given.seed, use_orders, static_cast<uint32_t>(sweep.passes.size()));
     SweepPass pass;
-    pass.differences.resize(sweep.pixels.size());
-    std::vector<std::array<dvec3, layer_count>> truths(sweep.tiles.size());
+    pass.differences.resize(sweep.pixels.size()), pass.truths.resize(sweep.pixels.size());
     parallel_for(static_cast<int64_t>(sweep.tiles.size()), [&](int64_t i) {
         if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
         const SweptTile& tile = sweep.tiles[static_cast<size_t>(i)];
@@ -128,62 +127,73 @@ void add_pass(const Compared& compared, const View& given, const FrameOptions& o
             for (size_t layer = 0; layer < layer_count; ++layer) {
                 pass.differences[tile.first + k][layer] =
                     (own[k].values[layer] - own_once[k].values[layer]) - (all[k].values[layer] - once[k].values[layer]);
-                truths[static_cast<size_t>(i)][layer] += dvec3(all[k].values[layer]);
+                pass.truths[tile.first + k][layer] = channel_mean(all[k].values[layer]);
             }
         }
     });
-    for (size_t t = 0; t < truths.size(); ++t)
-        for (size_t layer = 0; layer < layer_count; ++layer)
-            pass.truth[layer] +=
-                sweep.tiles[t].weight / static_cast<double>(sweep.tiles[t].count) * channel_mean(truths[t][layer]);
     sweep.passes.push_back(std::move(pass));
 }
 
-// Sums over passes, for one layer.
-struct DifferenceSums {
-    std::vector<dvec3> sums, squares; // per pixel
-    double truth = 0, passes = 0;
+// Sums over passes, for one layer, per pixel.
+struct PixelSums {
+    std::vector<dvec3> sums, squares; // of differences
+    std::vector<double> truths;
+    double passes = 0;
 
+    explicit PixelSums(size_t pixels) : sums(pixels), squares(pixels), truths(pixels) {}
     void add(const SweepPass& pass, size_t layer, double sign) {
         for (size_t i = 0; i < sums.size(); ++i) {
             const dvec3 difference(pass.differences[i][layer]);
             sums[i] += sign * difference, squares[i] += sign * difference * difference;
+            truths[i] += sign * double(pass.truths[i][layer]);
         }
-        truth += sign * pass.truth[layer], passes += sign;
+        passes += sign;
     }
+    // Product of a pixel's differences in two passes, averaged over all pairs of passes: its squared error, without
+    // bias.
+    double product(size_t i) const { return channel_mean(sums[i] * sums[i] - squares[i]) / (passes * (passes - 1)); }
 };
+
+// Mean over the image, and its variance due to the pixels that are not sampled.
+struct ImageMean {
+    double mean = 0, variance = 0;
+};
+
+// From a sample in two stages, of tiles and of pixels within them (Cochran 1977, 10.3); `value(i)`: of a pixel.
+template<class Value> ImageMean image_mean(const Sweep& sweep, const Value& value) {
+    std::vector<double> means; // per tile
+    double mean = 0, within = 0, between = 0;
+    for (const SweptTile& tile : sweep.tiles) {
+        const double count = static_cast<double>(tile.count);
+        double sum = 0, squares = 0;
+        for (size_t i = tile.first; i < tile.first + tile.count; ++i) {
+            const double one = value(i);
+            sum += one, squares += one * one;
+        }
+        means.push_back(sum / count), mean += tile.weight * means.back();
+        if (tile.count > 1)
+            within += tile.weight * tile.weight * (1 - tile.share) * std::max(squares - sum * means.back(), 0.0) /
+                      (count * (count - 1));
+    }
+    for (size_t t = 0; t < means.size(); ++t) between += std::pow(sweep.tiles[t].weight * (means[t] - mean), 2);
+    return {mean, (1 - sweep.share) * between + sweep.share * within};
+}
 
 struct Estimate {
     double squared = 0, mean = 0; // of differences, relative to the ground truth's squared mean and to its mean
     double variance = 0;          // of `squared`, due to the pixels that are not sampled
 };
 
-// The product of a pixel's differences in two passes estimates the mode's squared error without bias: it is averaged
-// over all pairs of passes, computed from sums. The variance is that of two-stage sampling, of tiles and of pixels
-// within them (Cochran 1977, 10.3).
-Estimate estimate(const Sweep& sweep, const DifferenceSums& of) {
-    const double truth = of.truth / of.passes;
-    std::vector<double> squared; // per tile
-    double squares = 0, sums = 0, within = 0;
-    for (const SweptTile& tile : sweep.tiles) {
-        const double count = static_cast<double>(tile.count);
-        double sum = 0, sum_squared = 0;
-        for (size_t i = tile.first; i < tile.first + tile.count; ++i) {
-            const double product =
-                channel_mean(of.sums[i] * of.sums[i] - of.squares[i]) / (of.passes * (of.passes - 1));
-            sum += product, sum_squared += product * product;
-            sums += tile.weight / count * channel_mean(of.sums[i]) / of.passes;
-        }
-        squared.push_back(sum / count), squares += tile.weight * squared.back();
-        if (tile.count > 1)
-            within += tile.weight * tile.weight * (1 - tile.share) * std::max(sum_squared - sum * squared.back(), 0.0) /
-                      (count * (count - 1));
-    }
-    if (!(truth > 0)) return {squares > 0 ? infinity : 0, 0, 0};
-    double between = 0;
-    for (size_t t = 0; t < squared.size(); ++t) between += std::pow(sweep.tiles[t].weight * (squared[t] - squares), 2);
-    const double scale = 1 / (truth * truth);
-    return {squares * scale, sums / truth, ((1 - sweep.share) * between + sweep.share * within) * scale * scale};
+// The mode's squared error over the squared mean of the ground truth, a ratio of two estimates from the same pixels:
+// its variance is that of a linear combination of both (Cochran 1977, 6.3).
+Estimate estimate(const Sweep& sweep, const PixelSums& of) {
+    const double truth = image_mean(sweep, [&](size_t i) { return of.truths[i] / of.passes; }).mean;
+    const double squared = image_mean(sweep, [&](size_t i) { return of.product(i); }).mean;
+    const double mean = image_mean(sweep, [&](size_t i) { return channel_mean(of.sums[i]) / of.passes; }).mean;
+    if (!(truth > 0)) return {squared > 0 ? infinity : 0, 0, 0};
+    const double slope = 2 * squared / truth, scale = 1 / (truth * truth);
+    const auto linear = [&](size_t i) { return of.product(i) - slope * of.truths[i] / of.passes; };
+    return {squared * scale, mean / truth, image_mean(sweep, linear).variance * scale * scale};
 }
 
 // 97.5 % quantile of Student's (1908) t distribution with `freedom` degrees of freedom: two terms of the expansion of
@@ -196,7 +206,7 @@ double student(double freedom) {
 
 // The bound is from how the estimate changes when each pass in turn is left out (Tukey's jackknife).
 OrdersError error_of(const Sweep& sweep, size_t layer) {
-    DifferenceSums sums{std::vector<dvec3>(sweep.pixels.size()), std::vector<dvec3>(sweep.pixels.size())};
+    PixelSums sums(sweep.pixels.size());
     for (const SweepPass& pass : sweep.passes) sums.add(pass, layer, 1);
     const Estimate all = estimate(sweep, sums);
     if (all.squared == infinity) return {0, {infinity, infinity}};
