@@ -4,7 +4,7 @@
 #include "scene/light.h"
 #include "scene/scene.h"
 #include "trace/fluence/light_paths.h"
-#include "trace/fog_motion.h"
+#include "trace/fog/motion.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

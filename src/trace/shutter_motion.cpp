@@ -3,8 +3,8 @@
 #include "scene/camera.h"
 #include "scene/pose.h"
 #include "scene/scene.h"
-#include "trace/fog.h"
-#include "trace/fog_motion.h"
+#include "trace/fog/media.h"
+#include "trace/fog/motion.h"
 #include "trace/moment.h"
 #include "trace/shadows/cached_shadows.h"
 

@@ -6,7 +6,7 @@
 #include "support/expect.h"
 #include "support/meshes.h"
 #include "support/scratch.h"
-#include "trace/fog.h"
+#include "trace/fog/media.h"
 #include "trace/snapshot.h"
 #include "volume/bricks/bricks.h"
 #include "volume/bricks/sparse_volume.h"

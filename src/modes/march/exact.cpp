@@ -1,8 +1,8 @@
 #include "modes/march/exact.h"
 
 #include "base/gauss_legendre.h"
-#include "integrate/lights/light_along.h"
 #include "integrate/style.h"
+#include "modes/march/lit_nodes.h"
 #include "scene/light_filter.h"
 #include "volume/medium.h"
 #include "volume/rays/emission_nodes.h"
@@ -26,18 +26,13 @@ struct LitEnd {
     int change = 0;
 };
 
-// A point of the ray, and its contribution before attenuation of the light on its way there.
-struct Node {
-    dvec3 position, light;
-};
-
 // Memory that a thread reuses from ray to ray.
 struct Scratch {
     FogPieces fog;
     LightAlong along;
     std::vector<LitPart> lit; // by the current light
     std::vector<LitEnd> ends;
-    std::vector<Node> nodes; // to resample from
+    std::vector<LitNode> nodes; // to resample from
 };
 
 struct RayMarch {
@@ -158,73 +153,6 @@ dvec3 multiply_scattered(RayMarch& on) {
     return sum;
 }
 
-// Up to 16 points at which a light is evaluated together.
-struct Pending {
-    alignas(64) float x[16] = {}, y[16] = {}, z[16] = {};
-    alignas(64) int32_t active[16] = {};
-    dvec3 position[16], light[16]; // contribution of each before attenuation of the light
-    int count = 0;
-};
-
-// Shadow rays to the light's point, through surfaces with alpha.
-void add_alpha_shadows(const RayMarch& on, const LightPoint& to, const Pending& pending, float* share) {
-    Occluders::ShadowRays rays{};
-    for (int i = 0; i < 16; ++i) {
-        rays.active[i] = pending.active[i];
-        if (!rays.active[i]) continue;
-        const dvec3 towards = to.far ? to.at : to.at - pending.position[i];
-        const double distance = glm::length(towards);
-        const dvec3 direction = towards / distance;
-        double end = to.far ? double(infinity) : distance;
-        if (to.radius > 0) { // ends at the surface of the light's sphere
-            const dvec3 center = to.center - pending.position[i];
-            const double along = glm::dot(center, direction), off = glm::dot(center, center) - along * along;
-            end = along - std::sqrt(std::max(to.radius * to.radius - off, 0.0));
-        }
-        rays.ox[i] = pending.x[i], rays.oy[i] = pending.y[i], rays.oz[i] = pending.z[i];
-        rays.dx[i] = float(direction.x), rays.dy[i] = float(direction.y), rays.dz[i] = float(direction.z);
-        rays.t_min[i] = 0, rays.t_max[i] = static_cast<float>(end * 0.9999);
-    }
-    shadow_casters(*on.scratch.along.light, on.frame.snapshot)->transmission(rays, share);
-}
-
-// Adds the pending points to the sum, attenuated by surfaces with alpha and fog between them and the light.
-void add_pending(RayMarch& on, size_t light_index, Pending& pending, dvec3& sum) {
-    if (pending.count == 0) return;
-    alignas(64) float depth[16] = {}, share[16];
-    for (int i = 0; i < 16; ++i) pending.active[i] = i < pending.count ? -1 : 0, share[i] = 1;
-    const LightAlong& along = on.scratch.along;
-    const auto& occluders = shadow_casters(*along.light, on.frame.snapshot);
-    if (occluders && occluders->has_alpha()) add_alpha_shadows(on, along.point, pending, share);
-    light_depths(on.frame.depths[light_index], pending.x, pending.y, pending.z, pending.active, depth);
-    for (int i = 0; i < pending.count; ++i) sum += double(share[i]) * std::exp(-double(depth[i])) * pending.light[i];
-    on.nodes += pending.count * march_work(on.frame.depths[light_index]);
-    pending.count = 0;
-}
-
-void add_node(RayMarch& on, size_t light_index, const Node& node, Pending& pending, dvec3& sum) {
-    const int i = pending.count++;
-    pending.x[i] = float(node.position.x), pending.y[i] = float(node.position.y), pending.z[i] = float(node.position.z);
-    pending.position[i] = node.position, pending.light[i] = node.light;
-    if (pending.count == 16) add_pending(on, light_index, pending, sum);
-}
-
-// Adds about `count` of the scratch's nodes, resampled in proportion to their contribution (systematic resampling,
-// Kitagawa 1996): the expected value over jitters is the sum of all nodes.
-void add_drawn(RayMarch& on, size_t light_index, int count, Pending& pending, dvec3& sum) {
-    const auto weight = [](const Node& node) { return node.light.x + node.light.y + node.light.z; };
-    double all = 0, before = 0;
-    for (const Node& node : on.scratch.nodes) all += weight(node);
-    const double each = all / count, shift = on.jitter;
-    for (const Node& node : on.scratch.nodes) {
-        const double after = before + weight(node);
-        const double times = std::floor(after / each + shift) - std::floor(before / each + shift);
-        before = after;
-        if (times > 0)
-            add_node(on, light_index, {node.position, node.light * (times * each / weight(node))}, pending, sum);
-    }
-}
-
 // Light scattered towards the eye at a node of given weight, before attenuation on its way from the light.
 dvec3 scattered_at(const RayMarch& on, size_t piece, double t, double weight) {
     const FogPieces& fog = on.scratch.fog;
@@ -264,17 +192,16 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     const bool slow = !depth.marched.empty() || (occluders && occluders->has_alpha());
     const int marches = slow ? on.frame.rule->settings.light_marches : 0;
     on.scratch.nodes.clear();
-    Pending pending;
-    dvec3 sum(0);
+    LitNodes nodes{on.frame, depth, along};
     const auto add = [&](size_t piece, double t, double weight) {
         const dvec3 light = scattered_at(on, piece, t, weight);
         // Negligible: a million such nodes would not change the seventh digit.
-        if (glm::all(glm::lessThanEqual(light, 1e-13 * sum))) return;
+        if (glm::all(glm::lessThanEqual(light, 1e-13 * nodes.sum))) return;
         ++on.nodes;
         if (marches > 0)
             on.scratch.nodes.push_back({on.at(t), light});
         else
-            add_node(on, light_index, {on.at(t), light}, pending, sum);
+            nodes.add({on.at(t), light});
     };
 
     size_t piece = 0;
@@ -291,11 +218,12 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
         }
     }
     if (static_cast<size_t>(marches) < on.scratch.nodes.size())
-        add_drawn(on, light_index, marches, pending, sum);
+        nodes.add_drawn(on.scratch.nodes, marches, on.jitter);
     else
-        for (const Node& node : on.scratch.nodes) add_node(on, light_index, node, pending, sum);
-    add_pending(on, light_index, pending, sum);
-    return sum * dvec3(along.light->intensity * along.light->volume_scale);
+        for (const LitNode& node : on.scratch.nodes) nodes.add(node);
+    nodes.attenuate();
+    on.nodes += nodes.work;
+    return nodes.sum * dvec3(along.light->intensity * along.light->volume_scale);
 }
 
 // Light of one light along the ray. The lit segments of its sample points are merged, each part with the fraction of

@@ -1,4 +1,5 @@
-// Light from fog on a segment of a line.
+// Light scattered in fog on a segment of a line.
+#include "modes/path/emission.h"
 #include "modes/path/faces.h"
 #include "scene/light.h"
 #include "volume/bricks/bricks.h"
@@ -6,11 +7,6 @@
 
 namespace tyndall {
 namespace {
-// Factor on the pdf of collisions in MIS weights, against picking: points on a line are picked by their brightness,
-// collisions are not. Between 1/4 and 1/16 noise is within 5 % of its minimum, in flames of 0.5 as in those of 200
-// optical depths.
-constexpr float collision_share = 1.0f / 8;
-
 void evaluate_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
     fog.position = position, fog.total = 0;
     fog.extinction.resize(snapshot.media.size()), fog.albedo.resize(snapshot.media.size());
@@ -97,58 +93,6 @@ void weigh(const PathState& state, const Segment& line, const Connection& connec
         fog.total / (chance + other) * mis_weight(state, fog, connection, peak_for_faces(state.tracer, fog), cosine);
     candidate.scattered = fog.scattered(snapshot, cosine) * share * connection.light;
     candidate.brightness = luminance(candidate.scattered) * guess;
-}
-
-// Interval of a medium on the segment if it is so thin there that paths rarely collide with it; else empty.
-Interval<float> thin_range(const Segment& line, const Medium& medium) {
-    const Interval<float> inside = clip(medium.world_bounds, line.rest.origin, line.rest.direction, {0, line.end});
-    return medium.majorant() * inside.length() < 1 ? inside : Interval<float>{};
-}
-
-// Light of a point in fire is sampled in three ways, combined by the balance heuristic: by connecting to it from the
-// start of the line; by picking a point on the line, best in thin fog; and by collisions of the path, best in thick
-// fog. Transmittance along the line is left out of the pdfs of the last two.
-struct FireShares {
-    float picked = 0, collided = 0;
-};
-FireShares fire_shares(const Segment& line, const EmissionSample& place, float distance, float colliding) {
-    const float found = place.line_density + colliding, away = line.traveled + distance;
-    const bool aims = line.vertex.density > 0; // no connections from the eye
-    const float chance = aims ? found + place.density * away * away / line.vertex.density : found;
-    if (!(chance > 0)) return {};
-    return {place.line_density / chance, colliding / chance};
-}
-
-void gather_field(const PathState& state, Segment& line, size_t number) {
-    Ray stretch = line.rest;
-    stretch.t_max = line.end;
-    const EmissionOnLine hit = emission_on_line(*state.tracer.fire, number, stretch, line.numbers(use_emission).x);
-    if (!(hit.inverse_density > 0)) return;
-    int& lookups = state.results[line.vertex.lane].steps;
-    ++lookups;
-    if (!(max_component(hit.sample.emission) > 0)) return;
-    const float colliding = collision_pdf(state.snapshot, hit.sample.position, lookups);
-    const float share = line.transmittance * line_transmittance(state, line, {0, hit.distance}) *
-                        fire_shares(line, hit.sample, hit.distance, colliding).picked;
-    add_light(state, line, hit.sample.emission * (share * hit.inverse_density), OtherLight::emission,
-              state.order == 0 || line.vertex.in_fog);
-}
-
-// Adds emission of thin fog at one sampled distance per medium; thicker fog emits at collisions.
-void gather_emission(const PathState& state, Segment& line) {
-    const size_t fields = state.tracer.fire ? state.tracer.fire->fields.size() : 0;
-    for (size_t m = 0; m < fields && line.transmittance > 0; ++m) gather_field(state, line, m);
-    for (const Medium& medium : state.snapshot.media) {
-        const vec3 emission = medium.optics.emission.radiance;
-        const Interval<float> range = thin_range(line, medium);
-        if (range.empty() || !(max_component(emission) > 0) || !(line.transmittance > 0)) continue;
-        const float distance = range.low + line.numbers(use_emission).x * range.length();
-        const float density = density_at(medium, line.rest.at(distance));
-        if (!(density > 0)) continue;
-        const float share = line.transmittance * line_transmittance(state, line, {0, distance});
-        add_light(state, line, emission * (share * density * range.length()), OtherLight::emission,
-                  state.order == 0 || line.vertex.in_fog);
-    }
 }
 
 // Adds light scattered at a distance sampled for the lights: one of several candidates, picked in proportion to its
@@ -262,16 +206,6 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
               fog.scattered(snapshot, cosine) * target.emission / (chance + fog.density(snapshot, cosine)), in_fog);
 }
 
-void gather_fire_at_collision(const PathState& state, Segment& line, float distance, const FogPoint& fog) {
-    for (size_t field = 0; field < state.tracer.fire->fields.size(); ++field) {
-        const EmissionSample place = emission_sample_at(*state.tracer.fire, field, fog.position);
-        if (!(max_component(place.emission) > 0)) continue;
-        const float share = fire_shares(line, place, distance, collision_share * fog.total).collided;
-        add_light(state, line, place.emission * (share / fog.total), OtherLight::emission,
-                  state.order == 0 || line.vertex.in_fog);
-    }
-}
-
 // If the path collides with fog on this segment, gathers light there and scatters the path.
 void collide(const PathState& state, Segment& line) {
     const Snapshot& snapshot = state.snapshot;
@@ -304,16 +238,6 @@ void collide(const PathState& state, Segment& line) {
     const vec3 albedo = fog.albedo_of(optics, static_cast<size_t>(hit));
     scatter(state, line, {{fog.position, direction}, albedo, density, sky_scale, peak}, in_fog);
 }
-}
-
-float collision_pdf(const Snapshot& snapshot, vec3 position, int& lookups) {
-    float extinction = 0;
-    for (const Medium& medium : snapshot.media) {
-        if (only_emits(medium.optics)) continue;
-        extinction += gray_extinction(medium.optics) * density_at(medium, position);
-        ++lookups;
-    }
-    return collision_share * extinction;
 }
 
 float line_transmittance(const PathState& state, Segment& line, Interval<float> range) {

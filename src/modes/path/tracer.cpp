@@ -1,6 +1,7 @@
 // The path-tracing loop: lines, the surfaces on them, and scattering.
 #include "modes/path/tracer.h"
 
+#include "modes/path/emission.h"
 #include "modes/path/faces.h"
 #include "scene/area_shape.h"
 #include "trace/lights/faces.h"

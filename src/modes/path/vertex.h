@@ -123,9 +123,6 @@ float line_transmittance(const PathState& state, Segment& line, Interval<float> 
 // Queues a connection that contributes `light` times the path's throughput if nothing is in its way.
 void queue(const PathState& state, Segment& line, Connection connection, vec3 light, bool in_fog);
 
-// Pdf, 1/m, with which a path finds a point of the fire by colliding there, scaled for MIS against other techniques.
-float collision_pdf(const Snapshot& snapshot, vec3 position, int& lookups);
-
 // Samples a point in emissive fog for a connection.
 EmissionSample pick_fire(const PathState& state, const Segment& line);
 

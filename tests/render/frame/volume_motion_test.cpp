@@ -6,7 +6,7 @@
 #include "support/expect.h"
 #include "support/limitations.h"
 #include "support/scratch.h"
-#include "trace/fog_motion.h"
+#include "trace/fog/motion.h"
 #include "trace/shutter_motion.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

@@ -1,11 +1,11 @@
-#include "trace/fog_motion.h"
+#include "trace/fog/motion.h"
 
 #include "base/error.h"
 #include "base/io/cache_folder.h"
 #include "base/io/file.h"
 #include "base/text.h"
 #include "scene/scene.h"
-#include "trace/fog_grids.h"
+#include "trace/fog/grids.h"
 #include "volume/bricks/bricks.h"
 #include "volume/motion/moved_fog.h"
 

@@ -1,22 +1,11 @@
 // What a medium reads from grids besides its density, at one moment: albedo and emission.
 #pragma once
-#include "trace/snapshot.h"
-#include "volume/emission/luminance.h"
-
-#include <optional>
+#include "trace/fog/grid_property.h"
 
 namespace tyndall {
 struct FogFrames;
 struct MediumSource;
 struct SequenceTime;
-
-// One property as read from its file, before the medium's transform.
-struct GridProperty {
-    std::string key;                      // empty = nothing to reuse
-    std::array<PlacedBricks, 3> channels; // the same pool three times for a gray grid
-    PlacedBricks coverage;                // colors only: 1 at voxels that have one
-    explicit operator bool() const { return channels[0].bricks != nullptr; }
-};
 
 // Emission of a medium, which becomes a separate medium (see append_light()).
 struct EmissionPart {

@@ -2,7 +2,7 @@
 #include "scene/scene.h"
 #include "support/expect.h"
 #include "support/scratch.h"
-#include "trace/fog_grids.h"
+#include "trace/fog/grids.h"
 #include "trace/snapshot.h"
 #include "volume/bricks/bricks.h"
 #include "volume/fog_fixtures.h"

@@ -1,0 +1,145 @@
+#include "trace/fog/grid_property.h"
+
+#include "base/error.h"
+#include "base/io/cache_folder.h"
+#include "base/io/file.h"
+#include "base/text.h"
+#include "scene/scene.h"
+#include "trace/fog/grids.h"
+#include "trace/fog/media.h"
+#include "trace/fog/motion.h"
+#include "volume/bricks/bricks.h"
+#include "volume/bricks/half.h"
+#include "volume/vdb/vdb.h"
+
+#include <span>
+
+namespace tyndall {
+namespace {
+// A property as stored in cache files.
+struct StoredProperty {
+    std::vector<BrickPool> pools; // the channels; for colors, then a mask of voxels that have one
+    std::vector<dmat4> places;    // index_to_world of each pool
+    std::string note;             // what was repaired when its file was read
+};
+
+template<class Visit> void fields(StoredProperty& property, Visit& visit) {
+    size_t count = property.pools.size();
+    visit(count), visit(property.places), visit(property.note);
+    property.pools.resize(count);
+    for (BrickPool& pool : property.pools) fields(pool, visit);
+}
+
+void add_pool(const SparseVolume& volume, StoredProperty& property) {
+    property.pools.push_back(*make_bricks(volume)), property.places.push_back(volume.index_to_world);
+}
+
+StoredProperty read_file(const std::filesystem::path& file, const GridSource& source, Quantity quantity) {
+    StoredProperty property;
+    VdbReadReport report;
+    if (quantity == Quantity::number) {
+        const SparseVolume numbers = read_vdb(file, source.grids[0], source.map, largest_half, &report);
+        within(file.string(), [&] { add_pool(numbers, property); });
+    } else {
+        const float most = quantity == Quantity::share ? 1 : largest_half;
+        const ColorVolume color = read_color_vdb(file, source.grids, source.map, most, &report);
+        within(file.string(), [&] {
+            for (const SparseVolume& channel : color.channels) add_pool(channel, property);
+            add_pool(color.coverage, property);
+        });
+    }
+    property.note = report.summary();
+    return property;
+}
+
+GridProperty property_of(StoredProperty stored, std::string key, Quantity quantity) {
+    GridProperty property;
+    property.key = std::move(key);
+    std::vector<PlacedBricks> pools;
+    for (size_t i = 0; i < stored.pools.size(); ++i)
+        pools.push_back({std::make_shared<const BrickPool>(std::move(stored.pools[i])), stored.places[i]});
+    if (quantity != Quantity::number) property.coverage = pools.back(), pools.pop_back();
+    for (size_t c = 0; c < 3; ++c) property.channels[c] = pools[pools.size() == 3 ? c : 0];
+    return property;
+}
+
+// A property, and a text that identifies it in every process; empty without a cache folder.
+struct FileProperty {
+    GridProperty property;
+    std::string content;
+};
+
+FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, const ReadContext& reading,
+                        std::span<const GridProperty> known) {
+    const auto file = sequence_file(source.sequence, frame, reading.missing);
+    if (!file) return {};
+    const std::string key = file_key(*file) + source.text();
+    CacheFolder* files = reading.snapshot.files.get();
+    const std::string content =
+        files ? "property " + file_hash(*file, *files->inputs) + " " + source.text() : std::string();
+    for (const GridProperty& one : known)
+        if (one.key == key) return {one, content};
+    StoredProperty stored =
+        load_or_build<StoredProperty>(files, "bricks", content, [&] { return read_file(*file, source, quantity); });
+    if (!stored.note.empty()) reading.snapshot.notes.push_back(file->filename().string() + ": " + stored.note);
+    return {property_of(std::move(stored), key, quantity), content};
+}
+
+// The property at a time between frames: two files blended, or one moved by velocities.
+StoredProperty property_between(const SequenceTime& time, const GridProperty& here, const GridProperty& next,
+                                Quantity quantity, const std::string& what) {
+    StoredProperty property;
+    const auto gray = [](const GridProperty& one) { return one.channels[0].bricks == one.channels[1].bricks; };
+    const size_t channels = gray(here) && gray(next) ? 1 : 3;
+    for (size_t c = 0; c < channels; ++c) add_pool(volume_at(time, here.channels[c], next.channels[c], what), property);
+    if (quantity != Quantity::number) add_pool(volume_at(time, here.coverage, next.coverage, what), property);
+    return property;
+}
+}
+
+GridProperty grid_property(const std::optional<GridSource>& source, size_t number, Quantity quantity,
+                           const ReadContext& reading, const GridProperty* before) {
+    if (!source) return {};
+    const SequenceTime& time = reading.time;
+    const FogFrames* frames_before = reading.before ? reading.before->frames.get() : nullptr;
+    std::vector<GridProperty> known;
+    if (before) known.push_back(*before);
+    if (frames_before)
+        known.insert(known.end(), frames_before->properties[number].begin(), frames_before->properties[number].end());
+    if (!time.between()) return read_frame(*source, quantity, time.frame, reading, known).property;
+
+    const auto of_frame = [&](int frame) {
+        FileProperty read = read_frame(*source, quantity, frame, reading, known);
+        if (read.property) reading.frames.properties[number].push_back(read.property);
+        return read;
+    };
+    const FileProperty here = of_frame(time.frame), next = time.share > 0 ? of_frame(time.frame + 1) : FileProperty();
+    if (!here.property && !next.property) return {};
+    if (time.share > 0 && here.property.key == next.property.key) return here.property;
+    const std::string key = here.property.key + "\n" + next.property.key + time.key();
+    if (before && before->key == key) return *before;
+    CacheFolder* files = reading.snapshot.files.get();
+    std::string content;
+    if (files) content = "property " + content_hash(here.content + "\n" + next.content + "\n" + time.content());
+    const std::string what = named("medium", reading.medium);
+    return property_of(load_or_build<StoredProperty>(
+                           files, "bricks", content,
+                           [&] { return property_between(time, here.property, next.property, quantity, what); }),
+                       key, quantity);
+}
+
+GridProperty grown_temperature(const MediumSource& source, const ReadContext& reading, const GridProperty* before) {
+    const FogRecipe recipe = medium_recipe(source);
+    const double seconds = reading.moment.grown.value_or(reading.moment.seconds);
+    GridProperty property;
+    property.key = "temperature of " + recipe_key(recipe, seconds);
+    if (before && before->key == property.key) return *before;
+    StoredProperty stored = load_or_build<StoredProperty>(reading.snapshot.files.get(), "bricks", property.key, [&] {
+        StoredProperty made;
+        add_pool(generate_temperature(recipe, seconds), made);
+        return made;
+    });
+    property.channels.fill({std::make_shared<const BrickPool>(std::move(stored.pools[0])), stored.places[0]});
+    return property;
+}
+}
