@@ -128,12 +128,6 @@ void add_mean_environment(const View& view, const Snapshot& snapshot, Limitation
                            {100 * off, nits}});
 }
 
-void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations) {
-    if (const double nits = nits_in_fog(snapshot); nits > 0)
-        limitations.push_back(
-            {Severity::wrong, &limitation::environment_left_out, Subject::light, snapshot.environment->name, {nits}});
-}
-
 namespace {
 // Fraction of the image's height that a sphere covers; 0 where none of it is in the image.
 double share_of_height(const View& view, vec3 center, double radius) {
@@ -226,19 +220,20 @@ void add_lamps_for_surfaces(const View& view, const Snapshot& snapshot, Limitati
     });
 }
 
-void add_unscattered_surfaces(const Snapshot& snapshot, Limitations& limitations) {
-    if (!std::ranges::any_of(snapshot.media, scatters_light)) return;
-    for_emitting_materials(snapshot, [&](const Material& material) {
-        if (material.alpha_mode == AlphaMode::opaque)
-            limitations.push_back(
-                {Severity::wrong, &limitation::emission_lights_no_fog, Subject::material, material.name});
-    });
-}
-
-void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations) {
+void add_left_out_light(const Snapshot& snapshot, bool surfaces_emit, Limitations& limitations) {
     for (const Medium& medium : snapshot.media)
         if (has_emission(medium))
             limitations.push_back(
                 {Severity::wrong, &limitation::emission_left_out, Subject::medium, medium.name, {lumens_of(medium)}});
+    if (surfaces_emit) add_dark_emission(snapshot, limitations);
+    if (surfaces_emit && std::ranges::any_of(snapshot.media, scatters_light))
+        for_emitting_materials(snapshot, [&](const Material& material) {
+            if (material.alpha_mode == AlphaMode::opaque)
+                limitations.push_back(
+                    {Severity::wrong, &limitation::emission_lights_no_fog, Subject::material, material.name});
+        });
+    if (const double nits = nits_in_fog(snapshot); nits > 0)
+        limitations.push_back(
+            {Severity::wrong, &limitation::environment_left_out, Subject::light, snapshot.environment->name, {nits}});
 }
 }

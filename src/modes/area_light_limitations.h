@@ -40,18 +40,16 @@ void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations);
 // Reports emissive surfaces approximated by lamps; `wrong` as in add_lamps_for_faces().
 void add_lamps_for_surfaces(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
-// Report an environment whose light in fog is reduced to its mean (error measured on a few rays), or left out.
+// Reports an environment whose light in fog is reduced to its mean (error measured on a few rays).
 void add_mean_environment(const View& view, const Snapshot& snapshot, Limitations& limitations);
-void add_left_out_environment(const Snapshot& snapshot, Limitations& limitations);
 
 // Reports area lights (rectangles, disks, spheres) approximated by lamps. `wrong` where fog scatters much of their
 // light within the distance at which they are inaccurate, or where that region covers much of the image.
 void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
-// Report materials whose emission illuminates nothing, and those whose emission illuminates surfaces but not fog.
+// Reports materials whose emission illuminates nothing.
 void add_dark_emission(const Snapshot& snapshot, Limitations& limitations);
-void add_unscattered_surfaces(const Snapshot& snapshot, Limitations& limitations);
 
-// Reports media whose emission is not rendered at all.
-void add_left_out_emission(const Snapshot& snapshot, Limitations& limitations);
+// Reports what is ignored in fog where only lamps illuminate it: media and surfaces that emit, and an environment.
+void add_left_out_light(const Snapshot& snapshot, bool surfaces_emit, Limitations& limitations);
 }

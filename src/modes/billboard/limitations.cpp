@@ -42,10 +42,7 @@ Limitations billboard_limitations(const View& view, const Snapshot& snapshot, co
     }
     add_mean_filters(snapshot, limitations);
     add_fog_through_middle(view, snapshot, limitations);
-    add_left_out_emission(snapshot, limitations);
-    if (settings.terms.emission)
-        add_dark_emission(snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
-    add_left_out_environment(snapshot, limitations);
+    add_left_out_light(snapshot, settings.terms.emission, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
     if (snapshot.media.empty()) limitations.push_back({Severity::info, &limitation::no_fog, Subject::scene});
     for (const Medium& medium : snapshot.media)

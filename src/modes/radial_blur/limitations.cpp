@@ -40,10 +40,7 @@ Limitations radial_blur_limitations(const View& view, const Snapshot& snapshot, 
             limitations.push_back({Severity::degraded, &limitation::homogeneous_dimming, Subject::medium, medium.name});
     add_mean_filters(snapshot, limitations);
     add_fog_through_middle(view, snapshot, limitations);
-    add_left_out_emission(snapshot, limitations);
-    if (settings.terms.emission)
-        add_dark_emission(snapshot, limitations), add_unscattered_surfaces(snapshot, limitations);
-    add_left_out_environment(snapshot, limitations);
+    add_left_out_light(snapshot, settings.terms.emission, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
     const std::vector<BlurLight> seen = blur_lights(view, snapshot, own);
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {
