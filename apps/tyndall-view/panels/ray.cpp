@@ -173,7 +173,7 @@ void draw_curves(const RayReport& report, ImVec2 low, ImVec2 high) {
     };
     draw_fog(next("fog: extinction, 1/m"), report);
     draw_transmittance(next("transmittance: to the camera (white), from each light (color)"), report, lights);
-    draw_light(next("light that reaches the camera, nits per meter (gray: ambient and emission)"), report, lights);
+    draw_light(next("light to the camera, nits/m (gray: ambient and emission)"), report, lights);
     for (size_t l = 0; l < lights.size(); ++l, y += lit + 3) {
         const std::string name = shortened(report.lights[lights[l]].name, 4.8 * 12);
         draw_words({low.x, y}, ImGui::ColorConvertU32ToFloat4(light_colors[l]), name);
