@@ -11,9 +11,6 @@ constexpr int tile_side = 4;
 // A tile's variance counts as at least these shares of its neighbors' and of the image's mean: few samples may have
 // missed it.
 constexpr double beside_share = 1.0 / 16, image_share = 1.0 / 256;
-// A pixel with at least `much_light` of an image's squared light, a lamp for instance, counts with at least
-// `light_share` of the variance that it would have if variances were as the squares of light.
-constexpr double much_light = 1.0 / 512, light_share = 1.0 / 4;
 
 double square_of_mean(const Image<vec3>& image) {
     double sum = 0;
@@ -41,36 +38,16 @@ Tiles empty_tiles(const Layers& layers) {
     return tiles;
 }
 
-// A layer's variances of one sample, relative to its squared mean; `samples`: those taken of each pixel, to the power.
-Image<double> relative_variances(const Image<vec3>& light, const Image<vec3>& variances, const Image<double>& samples) {
-    const double scale = square_of_mean(light);
-    Image<double> result(light.size);
-    if (!(scale > 0)) return result;
-    const auto squared = [&](size_t i) { return channel_mean(dvec3(light.pixels[i]) * dvec3(light.pixels[i])); };
-    double sum = 0, squares = 0;
-    for (size_t i = 0; i < light.pixels.size(); ++i) {
-        result.pixels[i] = channel_mean(variances.pixels[i]) / scale * samples.pixels[i];
-        sum += result.pixels[i], squares += squared(i);
-    }
-    for (size_t i = 0; i < light.pixels.size(); ++i)
-        if (const double share = squared(i) / squares; share > much_light)
-            result.pixels[i] = std::max(result.pixels[i], share * sum);
-    return result;
-}
-
-// The larger of color's and inscatter's variances, by tile.
-Tiles tiles_of(const Layers& layers, const Image<float>& taken, double power) {
+// Variances of one sample: the larger of color's and inscatter's, each relative to the layer's squared mean.
+Tiles relative_variances(const Layers& layers, const Image<float>& taken, double power) {
+    const double color = square_of_mean(layers.color), fog = square_of_mean(layers.inscatter);
     Tiles tiles = empty_tiles(layers);
-    const auto tile_at = [&](int x, int y) { return tiles.index((layers.low + ivec2(x, y)) / tile_side - tiles.low); };
-    Image<double> samples(layers.size);
-    for (int y = 0; y < layers.size.y; ++y)
-        for (int x = 0; x < layers.size.x; ++x) samples.at(x, y) = std::pow(double{taken.pixels[tile_at(x, y)]}, power);
-    const Image<double> color = relative_variances(layers.color, layers.variance, samples),
-                        fog = relative_variances(layers.inscatter, layers.inscatter_variance, samples);
     for (int y = 0; y < layers.size.y; ++y)
         for (int x = 0; x < layers.size.x; ++x) {
-            const size_t i = tile_at(x, y);
-            const double variance = std::max(color.at(x, y), fog.at(x, y));
+            const size_t i = tiles.index((layers.low + ivec2(x, y)) / tile_side - tiles.low);
+            const double a = color > 0 ? channel_mean(layers.variance.at(x, y)) / color : 0;
+            const double b = fog > 0 ? channel_mean(layers.inscatter_variance.at(x, y)) / fog : 0;
+            const double variance = std::max(a, b) * std::pow(double{taken.pixels[i]}, power);
             tiles.variance[i] += variance, tiles.squares[i] += variance * variance, tiles.pixels[i] += 1;
             tiles.work[i] += layers.work.empty() ? 1 : layers.work.at(x, y);
         }
@@ -158,7 +135,7 @@ Allotment allot(const Layers& layers, double taken, const AllotLimits& limits, d
 }
 
 Allotment allot(const Layers& layers, const Image<float>& taken, const AllotLimits& limits, double power, int least) {
-    const Sources sources = sources_of(tiles_of(layers, taken, power), power);
+    const Sources sources = sources_of(relative_variances(layers, taken, power), power);
     const std::vector<double> shares = shares_of_samples(sources);
     const auto at = [&](double scale) {
         Allotment result{layers.low / tile_side, Image<float>(tile_count(layers))};

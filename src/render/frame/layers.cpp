@@ -24,26 +24,16 @@ template<class T, class Share> void blend_power(Image<T>& image, const Image<T>&
         }
 }
 
-// Blends images whose two batches continue: the batches' difference is blended, and the variance follows from it. One
-// difference says little of a single pixel: one that held much of the image's variance before, and many times the mean,
-// keeps at least what is left of that where noise falls fastest.
+// Blends images whose two batches continue: the batches' difference is blended, and the variance follows from it.
 template<class Share>
 void blend_batches(Image<vec3>& apart, const Image<vec3>& other, Image<vec3>& variance, Image<float>& error,
                    const Share& share) {
-    constexpr double power = 1.5;
-    const double much = std::max(1.0 / 64, 64.0 / static_cast<double>(variance.pixels.size()));
-    double sum = 0;
-    for (const vec3& value : variance.pixels) sum += mean_component(value);
     blend(apart, other, share);
-    for (int y = 0; y < apart.size.y; ++y)
-        for (int x = 0; x < apart.size.x; ++x) {
-            vec3& value = variance.at(x, y);
-            const vec3 now = apart.at(x, y) * apart.at(x, y) / 4.0f;
-            const bool held_much = mean_component(value) > much * sum;
-            value = held_much ? glm::max(now, std::pow(1 - share({x, y}), float(power)) * value) : now;
-            const float mean = mean_component(value);
-            error.at(x, y) = mean * mean;
-        }
+    for (size_t i = 0; i < apart.pixels.size(); ++i) {
+        variance.pixels[i] = apart.pixels[i] * apart.pixels[i] / 4.0f;
+        const float mean = mean_component(variance.pixels[i]);
+        error.pixels[i] = mean * mean;
+    }
 }
 
 template<class Share> void blend_batches(Layers& layers, const Layers& other, const Share& share) {

@@ -56,18 +56,6 @@ TEST(Allotment, TakesTheWorseOfColorAndFog) {
     EXPECT_NEAR(allot(layers, 1, {0.02, endless}, 1, 2).samples.at(0, 0), 200, 1e-2);
 }
 
-// A lamp in one pixel, in which the samples so far found no variance.
-TEST(Allotment, APixelWithMuchOfTheLightHasAsMuchOfTheVariance) {
-    Layers layers = two_columns(1, 1);
-    layers.color.at(5, 9) = vec3(std::sqrt(0.25f * pixels_of_many)); // a fifth of the squared light
-    layers.variance.at(5, 9) = vec3(0);
-    const Allotment allotment = allot(layers, 1, {0.02, endless}, 1, 2);
-    const double others = allotment.samples.at(0, 0), lamp = allotment.samples.at(1, 2);
-    EXPECT_GT(std::pow(lamp / others, 2), 0.2 * pixels_of_many / 16) << "of 16 pixels, one has a fifth of the variance";
-    layers.color.at(5, 9) = vec3(std::sqrt(0.001f * pixels_of_many)); // a thousandth
-    EXPECT_LT(allot(layers, 1, {0.02, endless}, 1, 2).samples.at(1, 2), 1.01 * others);
-}
-
 TEST(Allotment, StaysWithinTheRaysThereAre) {
     const Allotment allotment = allot(two_columns(1, 9), 1, {0.02, pixels_of_many * 20.0}, 1, 2);
     EXPECT_NEAR(allotment.rays, pixels_of_many * 20, 1);

@@ -105,26 +105,6 @@ TEST(GoingOn, ToldVarianceIsThatOfThePicture) {
     }
 }
 
-// Differences of two batches: one pixel's was large, and is small once the second part is added, by chance.
-TEST(GoingOn, APixelThatHeldMuchOfTheVarianceIsNotForgotten) {
-    Layers layers, other;
-    layers.display = layers.size = other.display = other.size = {64, 32};
-    for (Layers* one : {&layers, &other}) {
-        one->color = one->inscatter = one->variance = one->inscatter_variance = Image<vec3>(one->size, vec3(1));
-        one->apart = one->inscatter_apart = Image<vec3>(one->size, vec3(2));
-        one->variance_error = one->inscatter_variance_error = Image<float>(one->size, 1);
-    }
-    layers.apart.at(20, 10) = vec3(20), layers.variance.at(20, 10) = vec3(100); // 5 % of all
-    other.apart.at(20, 10) = vec3(-20);
-    layers.apart.at(30, 10) = vec3(6), layers.variance.at(30, 10) = vec3(9); // less than half a percent
-    other.apart.at(30, 10) = vec3(-6);
-    blend_layers(layers, other, 0.5f);
-    EXPECT_NEAR(layers.variance.at(20, 10).x, 100 * std::pow(0.5, 1.5), 1e-3);
-    EXPECT_NEAR(layers.variance_error.at(20, 10), std::pow(100, 2) / 8, 0.1);
-    EXPECT_EQ(layers.variance.at(30, 10).x, 0);
-    EXPECT_EQ(layers.variance.at(0, 0).x, 1);
-}
-
 TEST(GoingOn, LeavesLessNoiseThanIndependentParts) {
     const Scene scene;
     const Snapshot snapshot = snapshot_of(scene);
