@@ -19,6 +19,16 @@ double square_of_mean(const Image<vec3>& image) {
     return mean * mean;
 }
 
+// Effective number of pixels that hold the squared light, as if equally bright.
+double bright_pixels(const Image<vec3>& image) {
+    double squares = 0, fourths = 0;
+    for (const vec3& value : image.pixels) {
+        const double square = std::pow(channel_mean(value), 2);
+        squares += square, fourths += square * square;
+    }
+    return fourths > 0 ? squares * squares / fourths : infinity;
+}
+
 // Sums over the pixels of each tile.
 struct Tiles {
     ivec2 low{0}, size{0};
@@ -137,6 +147,7 @@ Allotment allot(const Layers& layers, double taken, const AllotLimits& limits, d
 Allotment allot(const Layers& layers, const Image<float>& taken, const AllotLimits& limits, double power, int least) {
     const Sources sources = sources_of(relative_variances(layers, taken, power), power);
     const std::vector<double> shares = shares_of_samples(sources);
+    const double bright = std::min(bright_pixels(layers.color), bright_pixels(layers.inscatter));
     const auto at = [&](double scale) {
         Allotment result{layers.low / tile_side, Image<float>(tile_count(layers))};
         double sum = 0, squares = 0;
@@ -148,8 +159,9 @@ Allotment allot(const Layers& layers, const Image<float>& taken, const AllotLimi
             sum += sources.pixels[i] * variance, squares += sources.squares(i, variance);
         }
         result.squared_error = sum / sources.pixel_count;
-        result.pixels = squares > 0 ? sum * sum / squares : infinity;
-        result.squared_bound = squares > 0 ? result.squared_error * largest_square(result.pixels) : 0;
+        const double pixels = squares > 0 ? sum * sum / squares : infinity;
+        result.squared_bound = squares > 0 ? result.squared_error * largest_square(pixels) : 0;
+        result.pixels = std::min(pixels, bright);
         return result;
     };
 

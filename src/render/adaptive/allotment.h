@@ -14,7 +14,8 @@ struct Allotment {
     double rays = 0;          // over all pixels, in rays of mean cost
     double squared_error = 0; // expected, relative to the squared mean
     double squared_bound = 0; // upper bound with 99.5 % confidence
-    double pixels = 0;        // effective number of pixels that cause the error, as if of equal variance
+    double pixels = 0;        // effective number of pixels that cause the error, as if of equal variance; no more than
+                              // hold the squared light: few samples may miss the variance of a bright pixel
 };
 
 // What to allot for: both error limits at the least cost, or, if that takes more, the least error with `rays` rays of

@@ -112,6 +112,16 @@ TEST(Allotment, MakesTheBoundSmallWhereFewPixelsCount) {
     for (const float factor : {0.8f, 1.5f, 2.0f}) EXPECT_GT(with_factor(factor), 0.98 * with_factor(1)) << factor;
 }
 
+TEST(Allotment, CountsNoMorePixelsThanHoldTheLight) {
+    Layers layers = two_columns(1, 1, 64);
+    const AllotLimits limits{0.02, endless};
+    EXPECT_NEAR(allot(layers, 1, limits, 1, 2).pixels, 32 * 64, 1) << "all alike";
+    // A lamp of which two samples happened to agree: 49 of 49 + 2047 parts of the squared light.
+    layers.inscatter.at(3, 3) = vec3(7);
+    const double squares = 49 + 2047, fourths = 49 * 49 + 2047;
+    EXPECT_NEAR(allot(layers, 1, limits, 1, 2).pixels, squares * squares / fourths, 1);
+}
+
 TEST(Allotment, IsRenderedInPartsThatAddUp) {
     Allotment allotment;
     allotment.samples = Image<float>({2, 1});
