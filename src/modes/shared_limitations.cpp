@@ -172,23 +172,6 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
 }
 
 namespace {
-// Reports lights that change too much between two time samples for their sum to approximate the integral: where a light
-// fades by a factor r between two, the midpoint rule is off by (ln r)² / 24.
-void add_fading(const Snapshot& snapshot, Limitations& limitations) {
-    for (const Light& light : snapshot.lights) {
-        double largest = 0, before = 0;
-        for (const Snapshot& moment : *snapshot.moments) {
-            const auto found = std::ranges::find(moment.lights, light.name, &Light::name);
-            const double now = found == moment.lights.end() ? 0 : luminance(found->intensity);
-            if (before > 0 && now > 0) largest = std::max(largest, std::abs(std::log(now / before)));
-            before = now;
-        }
-        if (const double off = largest * largest / 24; off > visible_error)
-            limitations.push_back(
-                {Severity::degraded, &limitation::shutter_fades, Subject::light, light.name, {100 * off}});
-    }
-}
-
 // The largest weight, in percent, that the lesser of two blended files has at any time sample.
 double lesser_share(const Snapshot& snapshot) {
     double largest = 0;
@@ -221,7 +204,6 @@ void add_volume_motion(const Snapshot& snapshot, size_t medium, Limitations& lim
 void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     constexpr double separate = 1; // pixels: beyond this, copies of thin lines appear separate
     if (!view.shutter || !snapshot.moments || !snapshot.scene) return;
-    add_fading(snapshot, limitations);
     const double moments = static_cast<double>(view.shutter->cameras.size()), between = view.shutter->motion / moments;
     limitations.push_back({between > separate ? Severity::degraded : Severity::info,
                            &limitation::shutter_moments,

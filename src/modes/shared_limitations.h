@@ -47,9 +47,6 @@ inline constexpr LimitationKind mean_albedo{"mean_albedo",
                                             "its albedo is replaced by its mean color, an average error of {}%"};
 inline constexpr LimitationKind shutter_moments{
     "shutter_moments", "motion of up to {} pixels between two of the {n} time samples of motion blur (--time-samples)"};
-inline constexpr LimitationKind shutter_fades{"shutter_fades",
-                                              "its brightness changes so much between two time samples of motion blur "
-                                              "that it has an error of up to {}% (--time-samples)"};
 inline constexpr LimitationKind still_volumes{
     "still_volumes", "has one file per frame, so it does not move during the {} s of the open shutter (a \"velocity\" "
                      "in its \"grids\" moves it, \"blend\" in its \"sequence\" blends files)"};

@@ -49,7 +49,22 @@ template<class T> T Keyed<T>::at(double seconds) const {
     return between(values[i], values[next], share);
 }
 
+template<class T> void add_key_times(const Keyed<T>& keyed, double from, double to, std::vector<double>& times) {
+    constexpr size_t most = 4096;
+    if (keyed.constant()) return;
+    const double first = keyed.times.front(), period = double{keyed.times.back()} - first;
+    const bool repeats = keyed.loop && period > 0;
+    double start = repeats ? period * std::floor((from - first) / period) : 0; // of the keys' repetition
+    for (size_t added = 0; added < most && first + start < to; start += period) {
+        for (const float key : keyed.times)
+            if (start + key > from && start + key < to) times.push_back(start + key), ++added;
+        if (!repeats) return;
+    }
+}
+
 template struct Keyed<float>;
 template struct Keyed<vec3>;
 template struct Keyed<quat>;
+template void add_key_times(const Keyed<float>&, double, double, std::vector<double>&);
+template void add_key_times(const Keyed<vec3>&, double, double, std::vector<double>&);
 }

@@ -24,8 +24,13 @@ template<class T> struct Keyed {
     T at(double seconds) const;
 };
 
+// Appends the times of the keys between two times, repetitions included, in ascending order: at most 4096 of them.
+template<class T> void add_key_times(const Keyed<T>& keyed, double from, double to, std::vector<double>& times);
+
 // Implemented for float, vec3 and quat (spherical interpolation).
 extern template struct Keyed<float>;
 extern template struct Keyed<vec3>;
 extern template struct Keyed<quat>;
+extern template void add_key_times(const Keyed<float>&, double, double, std::vector<double>&);
+extern template void add_key_times(const Keyed<vec3>&, double, double, std::vector<double>&);
 }

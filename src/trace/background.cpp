@@ -26,15 +26,23 @@ vec2 lat_long_position(vec3 direction, float rotation) {
     return {0.5f + turn - std::floor(0.5f + turn), std::acos(std::clamp(direction.y, -1.0f, 1.0f)) / pi};
 }
 
-BackgroundState background_at(const Background& background, double seconds) {
+BackgroundState background_at(const Background& background, const Moment& moment) {
+    const auto brightness = [&](double seconds) {
+        return background.intensity.at(seconds) * std::exp2(background.exposure.at(seconds));
+    };
     BackgroundState now;
+    now.intensity = mean_brightness(moment, brightness);
+    const auto color_of = [&](const Keyed<vec3>& color) {
+        if (color.constant() || !(now.intensity > 0)) return color.at(moment.seconds);
+        const auto radiance = [&](double seconds) { return brightness(seconds) * color.at(seconds); };
+        return mean_brightness(moment, radiance) / now.intensity;
+    };
     now.stated = background.stated;
     now.kind = background.kind;
-    now.color = background.color.at(seconds);
-    now.zenith = background.zenith.at(seconds), now.ground = background.ground.at(seconds);
+    now.color = color_of(background.color);
+    now.zenith = color_of(background.zenith), now.ground = color_of(background.ground);
     now.image = background.image;
     now.lat_long = background.lat_long;
-    now.intensity = background.intensity.at(seconds) * std::exp2(background.exposure.at(seconds));
     now.rotation = background.rotation;
     return now;
 }

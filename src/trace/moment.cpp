@@ -5,14 +5,61 @@
 #include "scene/camera.h"
 #include "scene/scene.h"
 
+#include <algorithm>
+
 namespace tyndall {
 Moment moment_of(const Scene& scene, int frame) { return {frame, frame / scene.frame_rate, {}}; }
 
+namespace {
+// Visits what brightness depends on, of everything that gives light.
+template<class Visit> void visit_brightness(const Scene& scene, const Visit& visit) {
+    const auto visit_all = [&](const auto&... keyed) { (visit(keyed), ...); };
+    const auto of_background = [&](const Background& map) {
+        visit_all(map.color, map.zenith, map.ground, map.intensity, map.exposure);
+    };
+    for (const LightSource& light : scene.lights)
+        visit_all(light.color, light.intensity, light.exposure, light.temperature, light.volume_scale,
+                  light.surface_scale);
+    if (const auto& sky = scene.environment; sky.has_value()) {
+        of_background(sky->map);
+        visit_all(sky->intensity, sky->exposure, sky->volume_scale, sky->surface_scale);
+    }
+    of_background(scene.background), visit(scene.ambient);
+    for (const MediumSource& medium : scene.media) {
+        visit(medium.emission);
+        if (medium.blackbody) visit_all(medium.blackbody->scale, medium.blackbody->tint);
+    }
+}
+
+// The exposure of each of `count` moments, in seconds, if any brightness changes.
+std::vector<std::vector<ExposedTime>> exposures(const Scene& scene, int frame, const Shutter& shutter, int count) {
+    bool changes = false;
+    std::vector<double> breaks;
+    const auto seconds = [&](double time) { return (frame + time) / scene.frame_rate; };
+    visit_brightness(scene, [&](const auto& keyed) {
+        changes = changes || !keyed.constant();
+        add_key_times(keyed, seconds(shutter.open), seconds(shutter.close), breaks);
+    });
+    if (!changes) return std::vector<std::vector<ExposedTime>>(static_cast<size_t>(count));
+    for (double& time : breaks) time = time * scene.frame_rate - frame;
+    std::ranges::sort(breaks);
+    auto result = exposed_times(shutter, count, breaks);
+    for (std::vector<ExposedTime>& times : result)
+        for (ExposedTime& exposed : times) exposed.time = seconds(exposed.time);
+    return result;
+}
+}
+
 FrameMoments frame_moments(const Scene& scene, int frame, const Shutter& shutter, int count) {
     FrameMoments result{{frame, (frame + shutter.middle()) / scene.frame_rate}, {}};
-    if (!shutter || count < 2) return result;
-    for (const double time : shutter_times(shutter, count))
-        result.moments.push_back({frame, (frame + time) / scene.frame_rate});
+    if (!shutter) return result;
+    result.middle.exposed = exposures(scene, frame, shutter, 1).front();
+    if (count < 2) return result;
+    std::vector<std::vector<ExposedTime>> exposed = exposures(scene, frame, shutter, count);
+    for (const double time : shutter_times(shutter, count)) {
+        std::vector<ExposedTime>& own = exposed[result.moments.size()];
+        result.moments.push_back({frame, (frame + time) / scene.frame_rate, {}, std::move(own)});
+    }
     return result;
 }
 

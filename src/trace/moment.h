@@ -1,6 +1,7 @@
 // Moments in time: a single one, the moments that a frame averages, and a scene's nodes and cameras at a time.
 #pragma once
 #include "base/math.h"
+#include "scene/shutter.h"
 
 #include <optional>
 #include <string>
@@ -9,14 +10,23 @@
 namespace tyndall {
 struct Camera;
 struct Scene;
-struct Shutter;
 
 struct Moment {
     int frame = 0; // of the scene; selects files of sequences
     double seconds = 0;
     std::optional<double> grown{}; // seconds at which recipes and moving files are evaluated; none = `seconds`
+    // Seconds over which brightness is averaged, so that no flash is missed; weights add up to 1; empty = `seconds`.
+    std::vector<ExposedTime> exposed{};
 };
 Moment moment_of(const Scene& scene, int frame);
+
+// A brightness over a moment's share of the exposure; `value` takes seconds.
+template<class Value> auto mean_brightness(const Moment& moment, const Value& value) {
+    if (moment.exposed.empty()) return value(moment.seconds);
+    decltype(value(moment.seconds)) sum(0);
+    for (const ExposedTime& exposed : moment.exposed) sum += static_cast<float>(exposed.weight) * value(exposed.time);
+    return sum;
+}
 
 // The moments that a frame averages, with equal weights.
 struct FrameMoments {

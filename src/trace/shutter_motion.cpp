@@ -94,13 +94,12 @@ bool changes(const Scene& scene, const CameraSource& camera) {
            is_moving(scene, camera.node);
 }
 
+// In anything but brightness.
 bool changes(const Scene& scene, const LightSource& light) {
     const auto all = [](const auto&... values) { return (values.constant() && ...); };
     if (light.gobo && !all(light.gobo->rotation, light.gobo->scale)) return true;
-    return is_moving(scene, light.node) ||
-           !all(light.position, light.direction, light.color, light.intensity, light.exposure, light.temperature,
-                light.up, light.profile_rotation, light.volume_scale, light.surface_scale, light.inner_cone,
-                light.outer_cone, light.radius, light.angle);
+    return is_moving(scene, light.node) || !all(light.position, light.direction, light.up, light.profile_rotation,
+                                                light.inner_cone, light.outer_cone, light.radius, light.angle);
 }
 
 }
@@ -114,16 +113,6 @@ bool changes(const MediumSource& medium) {
 }
 
 namespace {
-bool changes(const Background& background) {
-    return !background.color.constant() || !background.zenith.constant() || !background.ground.constant() ||
-           !background.intensity.constant() || !background.exposure.constant();
-}
-
-bool changes(const EnvironmentSource& light) {
-    return changes(light.map) || !light.intensity.constant() || !light.exposure.constant() ||
-           !light.volume_scale.constant() || !light.surface_scale.constant();
-}
-
 double seconds_of(const Scene& scene, int frame, const Shutter& shutter, float share) {
     return (frame + shutter.open + share * (shutter.close - shutter.open)) / scene.frame_rate;
 }
@@ -157,10 +146,9 @@ float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const 
     return most;
 }
 
-bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter) {
+bool moves_while_open(const Scene& scene, int camera, const Shutter& shutter) {
     if (!shutter) return false;
-    return changes(scene, scene.cameras[static_cast<size_t>(camera)]) || !scene.ambient.constant() ||
-           changes(scene.background) || (scene.environment && changes(*scene.environment)) ||
+    return changes(scene, scene.cameras[static_cast<size_t>(camera)]) ||
            std::ranges::any_of(scene.lights, [&](const LightSource& light) { return changes(scene, light); }) ||
            std::ranges::any_of(scene.media, [](const MediumSource& medium) { return changes(medium); }) ||
            std::ranges::any_of(scene.instances, [&](const Instance& one) { return is_moving(scene, one); });
@@ -204,7 +192,7 @@ double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool e
 
 int auto_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter, bool keeps_images,
                  int finer) {
-    if (!changes_while_open(scene, camera, shutter)) return 1;
+    if (!moves_while_open(scene, camera, shutter)) return 1;
     float wanted = image_motion(scene, camera, size, frame, shutter) / spacing;
     if (std::ranges::any_of(scene.media, [](const MediumSource& medium) { return medium.velocity.has_value(); }))
         wanted = std::max(wanted, float(moments_of_velocities));

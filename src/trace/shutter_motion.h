@@ -18,11 +18,12 @@ float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const 
 // alone does not count.
 bool changes(const MediumSource& medium);
 
-// Whether anything may change while the shutter is open.
-bool changes_while_open(const Scene& scene, int camera, const Shutter& shutter);
+// Whether anything may change while the shutter is open besides the brightness of lights and of the background, whose
+// mean one moment shows as well.
+bool moves_while_open(const Scene& scene, int camera, const Shutter& shutter);
 
 // Number of moments for motion blur, a power of two: enough that they lie at most 0.75 pixels apart, at least 4 if
-// anything changes, else 1; times `finer` for an error target; at most max_auto_moments. Fewer, down to 4, if they
+// anything moves, else 1; times `finer` for an error target; at most max_auto_moments. Fewer, down to 4, if they
 // would take more than 8 GiB; `keeps_images`: the mode stores data per pixel and light. Fog moved by velocities gets
 // at least moments_of_velocities, as its speed is in files that are not read yet.
 int auto_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter,

@@ -25,7 +25,21 @@ namespace tyndall {
 namespace {
 constexpr float core_share = 1e-5f; // fraction of the scene's extent: core radius of its local lights
 
-Light light_at(const Scene& scene, const LightSource& source, double seconds, vec3& up) {
+// Gives a light its brightness: the mean over the moment's share of the exposure.
+void set_brightness(const LightSource& source, const Moment& moment, Light& light) {
+    const auto intensity = [&](double seconds) { return intensity_of(source, seconds); };
+    const auto scale_of = [&](const Keyed<float>& scale) {
+        if (scale.constant()) return scale.at(moment.seconds);
+        const auto scaled = [&](double seconds) { return luminance(intensity(seconds)) * scale.at(seconds); };
+        const float whole = luminance(light.intensity);
+        return whole > 0 ? mean_brightness(moment, scaled) / whole : scale.at(moment.seconds);
+    };
+    light.intensity = mean_brightness(moment, intensity);
+    light.volume_scale = scale_of(source.volume_scale), light.surface_scale = scale_of(source.surface_scale);
+}
+
+Light light_at(const Scene& scene, const LightSource& source, const Moment& moment, vec3& up) {
+    const double seconds = moment.seconds;
     Light light;
     up = source.up.at(seconds);
     light.name = source.name;
@@ -41,8 +55,7 @@ Light light_at(const Scene& scene, const LightSource& source, double seconds, ve
             refuse(scene.file.string(), named("light", source.name) + ": its direction is zero");
         if (length > 0) light.direction = direction / length;
     }
-    light.intensity = intensity_of(source, seconds);
-    light.volume_scale = source.volume_scale.at(seconds), light.surface_scale = source.surface_scale.at(seconds);
+    set_brightness(source, moment, light);
     light.outer_cone = source.outer_cone.at(seconds);
     light.inner_cone = std::min(source.inner_cone.at(seconds), light.outer_cone);
     light.range = source.range;
@@ -138,7 +151,7 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     snapshot.casters = std::move(links.casters), snapshot.lit = std::move(links.lit);
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         vec3 up;
-        Light light = light_at(scene, scene.lights[i], moment.seconds, up);
+        Light light = light_at(scene, scene.lights[i], moment, up);
         add_filter(scene.lights[i], moment, up, missing, previous, light);
         if (has_area(scene.lights[i])) add_face(scene.lights[i], moment.seconds, up, light);
         if (!links.of_lights.empty()) light.casters = links.of_lights[i].x, light.lit = links.of_lights[i].y;
@@ -146,10 +159,10 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
         if (shines(light)) snapshot.lights.push_back(std::move(light));
     }
     std::ranges::stable_partition(snapshot.lights, [](const Light& light) { return !light.area; });
-    snapshot.ambient = scene.ambient.at(moment.seconds);
-    snapshot.background = background_at(scene.background, moment.seconds);
+    snapshot.ambient = mean_brightness(moment, [&](double seconds) { return scene.ambient.at(seconds); });
+    snapshot.background = background_at(scene.background, moment);
     snapshot.environment =
-        environment_at(scene, moment.seconds, links.of_environment, previous ? previous->environment.get() : nullptr);
+        environment_at(scene, moment, links.of_environment, previous ? previous->environment.get() : nullptr);
     add_media(scene, moment, previous, missing, snapshot);
 
     const double start = steady_seconds();

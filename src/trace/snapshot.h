@@ -109,7 +109,7 @@ bool is_lit(const Environment& environment, const Snapshot& snapshot, int instan
 // Whether a surface that shadows one of the lights has alpha.
 bool has_alpha_shadows(const Snapshot& snapshot);
 
-BackgroundState background_at(const Background& background, double seconds);
+BackgroundState background_at(const Background& background, const Moment& moment);
 
 // Position of a direction in a latitude-longitude map, 0..1 from the upper left. The map's center is -Z; `rotation`
 // (radians) turns it to the left.

@@ -48,6 +48,18 @@ TEST(Keyed, TimesFarFromZeroKeepTheirPrecision) {
                 two_keys(Interpolation::linear, true).at(0.25 + 2), 1e-5);
 }
 
+TEST(Keyed, TellsItsKeysWithinATime) {
+    const auto between = [](const Keyed<float>& keys, double from, double to) {
+        std::vector<double> times;
+        add_key_times(keys, from, to, times);
+        return times;
+    };
+    EXPECT_TRUE(between(4.0f, -10, 10).empty());
+    EXPECT_EQ(between(two_keys(Interpolation::step), 0, 2), std::vector<double>{1});
+    EXPECT_EQ(between(two_keys(Interpolation::step, true), 4, 8), (std::vector<double>{5, 5, 7, 7})) << "ends meet";
+    EXPECT_LE(between(two_keys(Interpolation::step, true), 0, 1e9).size(), 4100u);
+}
+
 // A Hermite spline reproduces any cubic from its values and slopes: f(t) = t³ - 2t² + 3t - 1.
 TEST(Keyed, CubicReproducesACubic) {
     const auto f = [](double t) { return t * t * t - 2 * t * t + 3 * t - 1; };

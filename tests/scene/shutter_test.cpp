@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 namespace tyndall {
 namespace {
@@ -37,6 +38,36 @@ TEST(Shutter, NoneIsWhereNoLightGetsThrough) {
     }
     const std::vector<double> once = shutter_times({0, 1, {0, 1}}, 1);
     EXPECT_NEAR(once[0], std::sqrt(0.5), 1e-9);
+}
+
+double mean_of(const std::vector<ExposedTime>& times, const std::function<double(double)>& value) {
+    double sum = 0;
+    for (const ExposedTime& exposed : times) sum += exposed.weight * value(exposed.time);
+    return sum;
+}
+
+// Under a triangle over 0..1 a flash during 0.1..0.103 has the share 2 (0.103² - 0.1²) of the exposure.
+TEST(Shutter, SharesOfTheExposureMissNoFlash) {
+    const std::vector<double> breaks{0.1, 0.103};
+    const auto flash = [](double time) { return time > 0.1 && time < 0.103 ? 1.0 : 0.0; };
+    const auto shares = exposed_times({0, 1, {0, 1, 0}}, 4, breaks);
+    ASSERT_EQ(shares.size(), 4u);
+    double sum = 0;
+    for (const std::vector<ExposedTime>& times : shares) {
+        EXPECT_NEAR(mean_of(times, [](double) { return 1; }), 1, 1e-12);
+        sum += mean_of(times, flash) / 4;
+    }
+    EXPECT_NEAR(sum, 2 * (0.103 * 0.103 - 0.1 * 0.1), 1e-12);
+    EXPECT_EQ(mean_of(shares[3], flash), 0);
+}
+
+TEST(Shutter, SharesOfTheExposureAddUpToAll) {
+    const Shutter shutter{-0.25, 0.5, {1, 0.2f, 0, 0.7f}};
+    const auto curve = [](double time) { return std::exp2(9 * time); };
+    const double all = mean_of(exposed_times(shutter, 1, {})[0], curve);
+    double sum = 0;
+    for (const std::vector<ExposedTime>& times : exposed_times(shutter, 7, {})) sum += mean_of(times, curve) / 7;
+    EXPECT_NEAR(sum, all, 1e-7 * all); // of places where the curve is near 0, a root of the precision is known
 }
 }
 }

@@ -7,6 +7,7 @@
 #include "support/meshes.h"
 #include "support/scratch.h"
 #include "trace/fog/media.h"
+#include "trace/lights/environment.h"
 #include "trace/snapshot.h"
 #include "volume/bricks/bricks.h"
 #include "volume/bricks/sparse_volume.h"
@@ -68,6 +69,46 @@ TEST(Snapshot, EvaluatesLightsAndDropsDarkOnes) {
     EXPECT_EQ(light.intensity, vec3(5, 2.5f, 0));
     EXPECT_EQ(light.inner_cone, 0.5f);
     EXPECT_EQ(snapshot.bounds.low, vec3(1, 2, 3));
+}
+
+// Dark but for a millisecond of the exposure's second, between two of its four moments.
+template<class T> Keyed<T> flash(T value) {
+    Keyed<T> keys;
+    keys.times = {0, 0.301f, 0.302f}, keys.values = {0.0f * value, value, 0.0f * value};
+    keys.interpolation = Interpolation::step;
+    return keys;
+}
+
+TEST(Snapshot, MomentsShareAllOfAFlash) {
+    Scene scene;
+    scene.frame_rate = 1;
+    scene.lights.resize(3);
+    scene.lights[0].name = "flash", scene.lights[0].intensity = flash(1000.0f);
+    scene.lights[1].name = "on fog", scene.lights[1].volume_scale = flash(1000.0f);
+    scene.lights[2].name = "stops", scene.lights[2].exposure = from_to(0.0f, 10.0f);
+    scene.ambient = flash(vec3(1000)), scene.background.color = flash(vec3(1000));
+    scene.environment.emplace().intensity = flash(1000.0f), scene.environment->map.color = vec3(1);
+    MediumSource& glow = scene.media.emplace_back();
+    glow.extinction = 0.1f, glow.bounds = {vec3(-1), vec3(1)}, glow.emission = flash(vec3(1000));
+    const Snapshot middle = make_snapshot(scene, frame_moments(scene, 0, {0, 1, {}}, 4));
+    ASSERT_EQ(middle.moments->size(), 4u);
+
+    float flashed = 0, on_fog = 0, stops = 0, ambient = 0, background = 0, environment = 0, emission = 0;
+    for (const Snapshot& moment : *middle.moments) {
+        for (const Light& light : moment.lights) {
+            if (light.name == "flash") flashed += light.intensity.x / 4;
+            if (light.name == "on fog") on_fog += light.intensity.x * light.volume_scale / 4;
+            if (light.name == "stops") stops += light.intensity.x / 4;
+        }
+        ambient += moment.ambient.x / 4, background += moment.background.color.x * moment.background.intensity / 4;
+        if (moment.environment) environment += moment.environment->scale.x / 4;
+        emission += moment.media[0].optics.emission.radiance.x / 4;
+    }
+    for (const float mean : {flashed, on_fog, ambient, background, environment, emission}) EXPECT_NEAR(mean, 1, 1e-3f);
+    EXPECT_NEAR(stops, 1023 / (10 * std::numbers::ln2), 0.01f); // of 2^(10 t) over 0..1
+    ASSERT_EQ(middle.lights.size(), 3u);
+    EXPECT_NEAR(middle.lights[0].intensity.x, 1, 1e-3f) << "the middle stands for all of them";
+    EXPECT_EQ(make_snapshot(scene, frame_moments(scene, 0, {0, 0.3, {}}, 4)).lights.size(), 2u) << "before it";
 }
 
 TEST(Snapshot, LightWithoutDirectionIsRefused) {

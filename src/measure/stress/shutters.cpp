@@ -15,12 +15,10 @@
 
 namespace tyndall {
 namespace {
-double stated(const Limitation& limitation) { return limitation.amounts[0] / 100; }
-const std::vector<Excuse> excuses{{&limitation::fog_through_middle},  {&limitation::shutter_fades, 0, stated},
-                                  {&limitation::shutter_moments},     {&limitation::few_steps_for_glow, 2},
-                                  {&limitation::coarse_shafts},       {&limitation::grainy_edges, 1.5},
-                                  {&limitation::no_shadows, 3},       {&limitation::sun_without_shadows},
-                                  {&limitation::blurred_filter, 0.5}, {&limitation::sampled_gobo, 0.5}};
+const std::vector<Excuse> excuses{
+    {&limitation::fog_through_middle},  {&limitation::shutter_moments},     {&limitation::few_steps_for_glow, 2},
+    {&limitation::coarse_shafts},       {&limitation::grainy_edges, 1.5},   {&limitation::no_shadows, 3},
+    {&limitation::sun_without_shadows}, {&limitation::blurred_filter, 0.5}, {&limitation::sampled_gobo, 0.5}};
 
 // --- lenses --------------------------------------------------------------------------------------------------------
 // A spot's beam two meters behind a post.

@@ -127,7 +127,7 @@ Shutter shutter_of(const Scene& scene, const RenderRequest& request) {
 FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int frame) {
     const Shutter shutter = shutter_of(scene, request);
     const int camera = find_camera(scene, request.camera);
-    if (!changes_while_open(scene, camera, shutter)) return frame_moments(scene, frame, shutter, 1);
+    if (!moves_while_open(scene, camera, shutter)) return frame_moments(scene, frame, shutter, 1);
     const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
     // A mode that is not chosen yet may be one that remembers.
     const auto keeps_none = [&](const Mode& mode) { return mode.name == request.mode && !mode.uses_history; };

@@ -174,10 +174,12 @@ void color_medium(const MediumSource& source, double seconds, const MediumGrids&
     medium.optics.albedo_field = grids.placed_color;
 }
 
-void append_light(const MediumSource& source, double seconds, const MediumGrids& grids, Snapshot& snapshot) {
+void append_light(const MediumSource& source, const Moment& moment, const MediumGrids& grids, Snapshot& snapshot) {
+    const double seconds = moment.seconds;
     if (source.blackbody) {
         const BlackbodySource& blackbody = *source.blackbody;
-        vec3 scale = blackbody.scale.at(seconds) * blackbody.tint.at(seconds);
+        vec3 scale =
+            mean_brightness(moment, [&](double time) { return blackbody.scale.at(time) * blackbody.tint.at(time); });
         if (blackbody.by_absorption) {
             scale *= source.channel_extinction ? source.channel_extinction->at(seconds)
                                                : vec3(source.extinction.at(seconds));
@@ -186,6 +188,7 @@ void append_light(const MediumSource& source, double seconds, const MediumGrids&
         }
         append_part(grids.placed_blackbody, source.name + " (blackbody)", scale, snapshot);
     }
-    append_part(grids.placed_colored, source.name + " (emission)", source.emission.at(seconds), snapshot);
+    append_part(grids.placed_colored, source.name + " (emission)",
+                mean_brightness(moment, [&](double time) { return source.emission.at(time); }), snapshot);
 }
 }

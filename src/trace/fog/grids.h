@@ -37,7 +37,7 @@ std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Mome
 
 // Sets a medium's albedo field, and appends its emission to the snapshot's media.
 void color_medium(const MediumSource& source, double seconds, const MediumGrids& grids, Medium& medium);
-void append_light(const MediumSource& source, double seconds, const MediumGrids& grids, Snapshot& snapshot);
+void append_light(const MediumSource& source, const Moment& moment, const MediumGrids& grids, Snapshot& snapshot);
 
 // Whether a medium has grids besides its density.
 bool has_grids(const MediumSource& source);

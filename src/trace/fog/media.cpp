@@ -45,9 +45,11 @@ mat4 checked_matrix(const Scene& scene, const MediumSource& source, double secon
     return matrix;
 }
 
-Optics optics_at(const MediumSource& source, double seconds) {
+Optics optics_at(const MediumSource& source, const Moment& moment) {
+    const double seconds = moment.seconds;
     return {vec3(source.extinction.at(seconds)), source.albedo.at(seconds),
-            phase_at(source.phase, source.g.at(seconds), seconds), source.emission.at(seconds)};
+            phase_at(source.phase, source.g.at(seconds), seconds),
+            mean_brightness(moment, [&](double time) { return source.emission.at(time); })};
 }
 
 // Fog as stored in cache files.
@@ -223,7 +225,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
     FogSource& fog = snapshot.fog_sources.emplace_back(before);
     Medium medium;
     medium.name = source.name;
-    medium.optics = optics_at(source, moment.seconds);
+    medium.optics = optics_at(source, moment);
     if (source.emission_grid) medium.optics.emission.radiance = vec3(0);
     const bool dims = gray_extinction(medium.optics) > 0;
     MovingFiles files;
@@ -252,7 +254,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
         if (fog.grids) color_medium(source, moment.seconds, *fog.grids, medium);
         snapshot.media.push_back(std::move(medium));
     }
-    if (fog.grids) append_light(source, moment.seconds, *fog.grids, snapshot);
+    if (fog.grids) append_light(source, moment, *fog.grids, snapshot);
 }
 }
 

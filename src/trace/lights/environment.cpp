@@ -144,17 +144,22 @@ float environment_density(const Environment& environment, vec3 direction) {
     return table.densities[static_cast<size_t>(cell.y) * table.cells.x + cell.x];
 }
 
-std::shared_ptr<const Environment> environment_at(const Scene& scene, double seconds, ivec2 links,
+std::shared_ptr<const Environment> environment_at(const Scene& scene, const Moment& moment, ivec2 links,
                                                   const Environment* previous) {
     if (!scene.environment) return nullptr;
     const EnvironmentSource& source = *scene.environment;
-    const auto made = make_environment(background_at(source.map, seconds), previous);
+    const auto made = make_environment(background_at(source.map, moment), previous);
     if (!made) return nullptr;
     auto environment = std::make_shared<Environment>(*made);
     environment->name = source.name;
-    environment->scale = vec3(source.intensity.at(seconds) * std::exp2(source.exposure.at(seconds)));
-    environment->volume_scale = source.volume_scale.at(seconds);
-    environment->surface_scale = source.surface_scale.at(seconds);
+    const auto scale = [&](double seconds) {
+        return source.intensity.at(seconds) * std::exp2(source.exposure.at(seconds));
+    };
+    environment->scale = vec3(mean_brightness(moment, scale));
+    environment->volume_scale =
+        mean_brightness(moment, [&](double seconds) { return source.volume_scale.at(seconds); });
+    environment->surface_scale =
+        mean_brightness(moment, [&](double seconds) { return source.surface_scale.at(seconds); });
     environment->shadows = source.shadows, environment->casters = links.x, environment->lit = links.y;
     if (!is_finite(environment->mean()))
         refuse(scene.file.string(), named("light", source.name) + ": its radiance overflows");

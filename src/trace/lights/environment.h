@@ -38,7 +38,7 @@ std::shared_ptr<const Environment> make_environment(BackgroundState map, const E
 
 // The scene's environment at a moment; `links`: its sets of casters (x) and of lit instances (y). Null if there is none
 // or it is black. Throws Error (refused) if its radiance overflows a float.
-std::shared_ptr<const Environment> environment_at(const Scene& scene, double seconds, ivec2 links,
+std::shared_ptr<const Environment> environment_at(const Scene& scene, const Moment& moment, ivec2 links,
                                                   const Environment* previous);
 
 vec3 environment_radiance(const Environment& environment, vec3 direction);

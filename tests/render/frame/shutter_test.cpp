@@ -330,6 +330,9 @@ TEST(UsualMoments, NothingThatMovesNeedsOne) {
     Moving moving;
     put(moving, true);
     moving.scene.nodes[0].translation = vec3(0);
+    LightSource flash;
+    flash.intensity.times = {0.5f, 1}, flash.intensity.values = {0, 5};
+    moving.scene.lights.push_back(flash); // its mean brightness is known
     EXPECT_EQ(auto_moments(moving.scene, 0, ivec2(64), 0, moving.scene.cameras[0].shutter), 1);
     EXPECT_EQ(view_of(moving.scene, moving.request, moving.request.settings, 0).shutter, nullptr);
 }
