@@ -201,6 +201,7 @@ void add_volume_motion(const Snapshot& snapshot, size_t medium, Limitations& lim
 }
 }
 
+namespace {
 void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     constexpr double separate = 1; // pixels: beyond this, copies of thin lines appear separate
     if (!view.shutter || !snapshot.moments || !snapshot.scene) return;
@@ -211,6 +212,41 @@ void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limita
                            view.camera.name,
                            {between, moments}});
     for (size_t i = 0; i < snapshot.scene->media.size(); ++i) add_volume_motion(snapshot, i, limitations);
+}
+
+// How many times brighter a phase function is in its forward direction than on average over a disc around it.
+double peak_ratio(const Phase& phase, float radius) {
+    constexpr int rings = 256; // of equal area
+    double sum = 0;
+    for (int ring = 0; ring < rings; ++ring) {
+        const double angle = double{radius} * std::sqrt((ring + 0.5) / rings);
+        sum += double{phase_value(phase, static_cast<float>(std::cos(angle)))} / rings;
+    }
+    return double{phase_value(phase, 1)} / std::max(sum, 1e-30);
+}
+
+// Reports suns so large that a narrow lobe would show their discs, as directions are those of their centers.
+void add_sun_discs(const Snapshot& snapshot, Limitations& limitations) {
+    for (const Light& light : snapshot.lights) {
+        if (light.kind != LightKind::sun || !(light.angle > 0)) continue;
+        double most = 1;
+        for (const Medium& medium : snapshot.media)
+            if (scatters_light(medium)) most = std::max(most, peak_ratio(medium.optics.phase, light.angle));
+        constexpr float real_sun = 0.3f; // degrees
+        const double degrees = double{glm::degrees(light.angle)};
+        if (most - 1 > visible_error)
+            limitations.push_back({degrees > real_sun ? Severity::degraded : Severity::info,
+                                   &limitation::sun_disc,
+                                   Subject::light,
+                                   light.name,
+                                   {100 * (most - 1), degrees}});
+    }
+}
+}
+
+void add_to_every_mode(const View& view, const Snapshot& snapshot, Limitations& limitations) {
+    add_shutter(view, snapshot, limitations);
+    add_sun_discs(snapshot, limitations);
 }
 
 namespace {

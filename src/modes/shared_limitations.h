@@ -47,6 +47,9 @@ inline constexpr LimitationKind mean_albedo{"mean_albedo",
                                             "its albedo is replaced by its mean color, an average error of {}%"};
 inline constexpr LimitationKind shutter_moments{
     "shutter_moments", "motion of up to {} pixels between two of the {n} time samples of motion blur (--time-samples)"};
+inline constexpr LimitationKind sun_disc{"sun_disc",
+                                         "fog right in front of it is up to {}% too bright: its disc of {} degrees "
+                                         "softens shadows only; surfaces and phase functions see its center"};
 inline constexpr LimitationKind still_volumes{
     "still_volumes", "has one file per frame, so it does not move during the {} s of the open shutter (a \"velocity\" "
                      "in its \"grids\" moves it, \"blend\" in its \"sequence\" blends files)"};
@@ -92,8 +95,9 @@ void add_light_transmittance(const Snapshot& snapshot, LightTransmittance light,
 // Reports what a fluence grid for multiple scattering cannot show, unshadowed ambient light, and float precision.
 void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettings& settings, Limitations& limitations);
 
-// Reports the time samples of motion blur, and volumes that do not move within them.
-void add_shutter(const View& view, const Snapshot& snapshot, Limitations& limitations);
+// Reports what holds in every mode: the time samples of motion blur, volumes that do not move within them, and suns
+// whose disc would show in a narrow phase function.
+void add_to_every_mode(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
 // Report media whose albedo or emission grid is reduced to its mean color.
 void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations);

@@ -60,7 +60,7 @@ inline float range_window(float distance, float range) {
 }
 
 // KHR_lights_punctual's cone: clamp(cosine · scale + offset, 0, 1)², 1 inside inner_cone, 0 outside outer_cone. Its
-// guard of 0.001 against division by zero would dim cones under 2.6°; this one is small enough for any beam.
+// guard of 0.001 against division by zero would dim cones under 2.6°; this one is below any cone's own width.
 struct ConeFalloff {
     float scale, offset;
     float at(float cosine) const {
@@ -69,7 +69,8 @@ struct ConeFalloff {
     }
 };
 inline ConeFalloff cone_falloff(const Light& light) {
-    const float outer = std::cos(light.outer_cone), scale = 1 / std::max(std::cos(light.inner_cone) - outer, 1e-6f);
+    const float outer = std::cos(light.outer_cone), half = std::sin(0.5f * light.outer_cone);
+    const float scale = 1 / std::max(std::cos(light.inner_cone) - outer, std::min(1e-6f, 0.5f * half * half));
     return {scale, -outer * scale};
 }
 }

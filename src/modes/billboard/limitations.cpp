@@ -47,7 +47,7 @@ Limitations billboard_limitations(const View& view, const Snapshot& snapshot, co
     if (snapshot.media.empty()) limitations.push_back({Severity::info, &limitation::no_fog, Subject::scene});
     for (const Medium& medium : snapshot.media)
         limitations.push_back({Severity::degraded, &limitation::homogeneous_in_cards, Subject::medium, medium.name});
-    add_shutter(view, snapshot, limitations);
+    add_to_every_mode(view, snapshot, limitations);
     return limitations;
 }
 }

@@ -74,7 +74,7 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
         add_emission(snapshot, true, limitations), add_lamps_for_fire(snapshot, limitations);
         add_dark_emission(snapshot, limitations), add_lamps_for_surfaces(view, snapshot, limitations);
     }
-    add_shutter(view, snapshot, limitations);
+    add_to_every_mode(view, snapshot, limitations);
     return limitations;
 }
 }

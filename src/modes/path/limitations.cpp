@@ -20,7 +20,7 @@ Limitations path_limitations(const View& view, const Snapshot& snapshot, const S
                                Subject::setting,
                                "path.orders",
                                {static_cast<double>(settings.path.orders)}});
-    add_shutter(view, snapshot, limitations);
+    add_to_every_mode(view, snapshot, limitations);
     return limitations;
 }
 }

@@ -52,7 +52,7 @@ Limitations radial_blur_limitations(const View& view, const Snapshot& snapshot, 
         else if (found->fade < 1)
             limitations.push_back({Severity::degraded, &limitation::light_leaving_screen, Subject::light, name});
     }
-    add_shutter(view, snapshot, limitations);
+    add_to_every_mode(view, snapshot, limitations);
     return limitations;
 }
 }

@@ -66,7 +66,7 @@ Limitations shadow_volume_limitations(const View& view, const Snapshot& snapshot
     add_sampled_filters(snapshot, Sampled::fine_gobos, gobo_nodes, limitations);
     add_shadows(snapshot, limitations);
     add_fog_through_middle(view, snapshot, limitations);
-    add_shutter(view, snapshot, limitations);
+    add_to_every_mode(view, snapshot, limitations);
     return limitations;
 }
 }

@@ -112,6 +112,8 @@ const Mistake mistakes[] = {
      "/lights/0", "inner_cone"},
     {R"("lights": [{"type": "spot", "intensity": 1, "position": [0, 0, 0], "direction": [0, -1, 0], "inner_cone": 20, "outer_cone": {"keys": [[0, 30], [1, 10]]}}])",
      "/lights/0/outer_cone", "moment"},
+    {R"("lights": [{"type": "spot", "intensity": 1, "position": [0, 0, 0], "direction": [0, -1, 0], "outer_cone": 0.01}])",
+     "/lights/0/outer_cone", "0.05 degrees"},
     {R"("lights": [{"name": "a", "type": "sun", "intensity": 1, "direction": [0, -1, 0]}, {"name": "a", "type": "sun", "intensity": 1, "direction": [0, -1, 0]}])",
      "/lights/1/name", "already"},
     {R"("lights": [{"type": "spot", "intensity": 1, "position": {"keys": [[0, [0, 1, 0]], [1, [1, 1, 0]]], "loop": true}, "target": {"keys": [[0, [0, 0, 0]], [2, [1, 0, 0]]], "loop": true}}])",
