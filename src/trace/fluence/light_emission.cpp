@@ -38,30 +38,51 @@ void fit_sun(const Box& reach, LightSquare& square) {
     square.power = square.light->intensity * (size.x * size.y);
 }
 
-// Directions of a local light: a spot's cone, or the cone around the box.
-void fit_directions(const Box& reach, LightSquare& square) {
+// The directions from a point to a ball; all if it is inside.
+DirectionCone cone_around(vec3 center, float radius, vec3 from) {
+    const vec3 towards = center - from;
+    const float distance = glm::length(towards);
+    if (!(distance > radius)) return {};
+    const float square = radius / distance * (radius / distance);
+    return {towards / distance, square / (1 + std::sqrt(1 - square))};
+}
+
+bool is_flat(const Light& light) { return light.area && light.area->kind != LightKind::sphere; }
+
+// Of a light larger than the box, rays are chosen by where they cross the box.
+bool dwarfs(const Light& light, float radius) {
+    return (is_flat(light) ? glm::length(light.area->half) : light.radius) > radius;
+}
+
+DirectionCone own_cone(const Light& light) {
+    if (!has_cone(light) || is_flat(light)) return {};
+    const float half = std::sin(0.5f * std::min(light.outer_cone, pi));
+    return {light.direction, 2 * half * half};
+}
+
+void fit_directions(LightSquare& square) {
     const Light& light = *square.light;
-    vec3 axis = light.direction;
-    float cosine = std::cos(std::min(light.outer_cone, pi));
-    if (shines_around(light)) {
-        const vec3 towards = reach.center() - light.position;
-        const float distance = glm::length(towards),
-                    radius =
-                        0.5f * glm::length(reach.size()) + (light.area ? glm::length(light.area->half) : light.radius);
-        cosine = distance > radius ? std::sqrt(1 - radius * radius / (distance * distance)) : -1;
-        axis = distance > radius ? towards / distance : vec3(0, 1, 0);
-    }
-    square.axis = axis, square.lowest_cosine = cosine;
-    make_frame(axis, square.across, square.up);
-    square.power = light.intensity * (2 * pi * (1 - cosine));
+    const float reach = square.radius + (is_flat(light) ? glm::length(light.area->half) : light.radius);
+    square.cone = cone_around(square.center, reach, light.position);
+    if (const DirectionCone own = own_cone(light); own.span < square.cone.span) square.cone = own;
+    square.power = light.intensity * (2 * pi * square.cone.span);
+    if (!dwarfs(light, square.radius)) return;
+    const float area = is_flat(light) ? face_area(*light.area) : pi * light.radius * light.radius;
+    square.power *= pi * square.radius * square.radius / area;
+}
+
+LightSquare square_around(const Box& reach) {
+    LightSquare square;
+    square.center = reach.center(), square.radius = 0.5f * glm::length(reach.size());
+    return square;
 }
 
 LightSquare square_of(const Light& light, const Box& reach) {
-    LightSquare square;
+    LightSquare square = square_around(reach);
     square.light = &light;
     square.axis = light.direction;
     make_frame(square.axis, square.across, square.up);
-    is_distant(light) ? fit_sun(reach, square) : fit_directions(reach, square);
+    is_distant(light) ? fit_sun(reach, square) : fit_directions(square);
     return square;
 }
 
@@ -70,10 +91,9 @@ LightSquare square_of(const std::shared_ptr<const Environment>& environment, con
     light.name = environment->name, light.kind = LightKind::sun, light.shadows = environment->shadows;
     light.volume_scale = environment->volume_scale, light.surface_scale = environment->surface_scale;
     light.casters = environment->casters, light.lit = environment->lit;
-    LightSquare square;
+    LightSquare square = square_around(reach);
     square.environment = environment, square.as_light = std::make_shared<const Light>(std::move(light));
     square.light = square.as_light.get();
-    square.center = reach.center(), square.radius = 0.5f * glm::length(reach.size());
     square.power = environment->mean() * (4 * pi * pi * square.radius * square.radius);
     return square;
 }
@@ -84,6 +104,41 @@ std::vector<LightSquare> squares_of(const Snapshot& snapshot, const Box& reach) 
     for (const Light& light : snapshot.lights) squares.push_back(square_of(light, reach));
     if (snapshot.environment) squares.push_back(square_of(snapshot.environment, reach));
     return squares;
+}
+
+vec3 DirectionCone::direction(vec2 u) const {
+    const float off = u.x * span, sine = std::sqrt(off * (2 - off)), angle = 2 * pi * u.y; // off: 1 - cosine
+    vec3 x, y;
+    make_frame(axis, x, y);
+    return glm::normalize(sine * (std::cos(angle) * x + std::sin(angle) * y) + (1 - off) * axis);
+}
+
+namespace {
+Ray local_ray(const LightSquare& square, vec2 place, vec2 soft) {
+    const Light& light = *square.light;
+    const bool crosses = dwarfs(light, square.radius);
+    if (is_flat(light) && !crosses) {
+        const vec3 origin = face_place(*light.area, soft);
+        return {origin, cone_around(square.center, square.radius, origin).direction(place)};
+    }
+    const vec3 direction = square.cone.direction(place);
+    vec3 x, y;
+    make_frame(direction, x, y);
+    const vec2 disc = on_disc(soft);
+    const vec3 point = (crosses ? square.center : light.position) +
+                       (crosses ? square.radius : light.radius) * (disc.x * x + disc.y * y);
+    const vec3 off = point - light.position;
+    const float along = glm::dot(off, direction);
+    if (is_flat(light)) {
+        const vec3& normal = light.area->normal;
+        return {point - glm::dot(point - light.area->center, normal) / glm::dot(direction, normal) * direction,
+                direction};
+    }
+    // A ball's rays start at its surface, those of other lights at a disc in front of it.
+    const float beside = std::max(glm::dot(off, off) - along * along, 0.0f), squared = light.radius * light.radius;
+    const float front = light.area ? std::sqrt(std::max(squared - beside, 0.0f)) : light.radius;
+    return {point + (front - along) * direction, direction};
+}
 }
 
 Ray LightSquare::ray(vec2 place, vec2 soft) const {
@@ -99,14 +154,24 @@ Ray LightSquare::ray(vec2 place, vec2 soft) const {
         const vec3 direction = light->angle > 0 ? glm::normalize(axis + disc.x * across + disc.y * up) : axis;
         return {at.x * across + at.y * up + start * axis, direction};
     }
-    const float cosine = 1 - place.x * (1 - lowest_cosine), sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
-    const float angle = 2 * pi * place.y;
-    const vec3 direction = glm::normalize(sine * (std::cos(angle) * across + std::sin(angle) * up) + cosine * axis);
-    if (light->area && light->area->kind != LightKind::sphere) return {face_place(*light->area, soft), direction};
-    vec3 x, y;
-    make_frame(direction, x, y);
-    const vec2 disc = on_disc(soft);
-    return {light->position + light->radius * (direction + disc.x * x + disc.y * y), direction};
+    return local_ray(*this, place, soft);
+}
+
+namespace {
+bool is_on(const AreaShape& face, vec3 point) {
+    const vec2 at = vec2(glm::dot(point - face.center, face.right), glm::dot(point - face.center, face.up)) / face.half;
+    return face.kind == LightKind::disc ? glm::dot(at, at) <= 1 : std::max(std::abs(at.x), std::abs(at.y)) <= 1;
+}
+
+// Of a light larger than the box: 1 on it, 0 beside it; divided by the cosine with which a face emits.
+float share_across(const Light& light, const Ray& ray) {
+    const vec3 off = ray.origin - light.position;
+    if (is_flat(light)) {
+        const float cosine = std::abs(glm::dot(ray.direction, light.area->normal));
+        return is_on(*light.area, ray.origin) && cosine > 1e-4f ? 1 / cosine : 0;
+    }
+    return glm::length(off - glm::dot(off, ray.direction) * ray.direction) <= light.radius ? 1 : 0;
+}
 }
 
 vec3 LightSquare::share(const Ray& ray) const {
@@ -119,6 +184,10 @@ vec3 LightSquare::share(const Ray& ray) const {
     }
     vec3 share(has_cone(*light) ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f);
     if (light->filter) share *= vec3(filtered(*light->filter, dvec3(direction)));
+    if (dwarfs(*light, radius))
+        share *= share_across(*light, ray);
+    else if (is_flat(*light))
+        share *= cone_around(center, radius, ray.origin).span / cone.span;
     if (light->area) share *= face_texture(*light->area, ray.origin);
     return share;
 }

@@ -10,20 +10,30 @@ struct Environment;
 struct Light;
 struct Snapshot;
 
+// Directions whose cosine with the axis is at least 1 - span.
+struct DirectionCone {
+    vec3 axis{0, 1, 0};
+    float span = 2;
+
+    vec3 direction(vec2 u) const; // uniformly distributed
+};
+
 struct LightSquare {
     const Light* light = nullptr;
-    vec3 axis{0}, across{0}, up{0}; // orthonormal
+    vec3 center{0}; // of a ball around the box
+    float radius = 0;
+    vec3 power{0}; // of a uniform light of this intensity over the whole square
     // Suns: the rectangle perpendicular to the axis that contains all rays into the box, and its position along the
     // axis, in front of the box.
+    vec3 axis{0}, across{0}, up{0}; // orthonormal
     vec2 low{0}, high{0};
     float start = 0;
-    float lowest_cosine = -1; // local lights: smallest cosine of the directions with the axis
-    vec3 power{0};            // of a uniform light of this intensity over the whole square
+    // Local lights: the narrower of the light's own cone and that around the ball; for rectangles and discs, whose
+    // points have cones of their own, from the center.
+    DirectionCone cone;
     // Environment: a direction sampled by radiance, and the disc perpendicular to it that covers the box.
     std::shared_ptr<const Environment> environment; // null for other lights
     std::shared_ptr<const Light> as_light;          // its scales, shadows and links; `light` points here
-    vec3 center{0};
-    float radius = 0;
 
     // The ray at a point of the unit square; `soft` chooses a point of a soft light.
     Ray ray(vec2 place, vec2 soft) const;
