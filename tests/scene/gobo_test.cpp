@@ -59,6 +59,14 @@ TEST(Gobo, NumbersAreLightAsTheColorSpaceSays) {
     EXPECT_EQ(letter()->planes, 1);
 }
 
+TEST(Gobo, BlackOnesAreSaid) {
+    for (const Texel texel : {black, clear, gray}) {
+        std::string note;
+        make_gobo(png_of({2, 1}, {black, texel}), ColorSpace::srgb, "gobo.png", note);
+        EXPECT_EQ(note, texel == gray ? "" : "the image is black");
+    }
+}
+
 TEST(Gobo, LevelsKeepTheMean) {
     std::vector<Texel> texels;
     for (int i = 0; i < 37 * 21; ++i) texels.push_back(i % 3 && i % 7 ? white : black);

@@ -4,6 +4,7 @@
 #include "base/exr/exr_picture.h"
 #include "base/io/file.h"
 #include "base/srgb.h"
+#include "base/text.h"
 #include "scene/images/radiance_file.h"
 
 #include <algorithm>
@@ -68,11 +69,22 @@ Image<vec3> decode_openexr(std::string_view bytes, std::string_view where, std::
 
 bool holds_floats(ImageFormat format) { return format == ImageFormat::radiance || format == ImageFormat::openexr; }
 
+void check_finite(const Image<vec3>& image, std::string_view where) {
+    const auto broken = [](const vec3& pixel) { return !is_finite(pixel); };
+    const auto first = std::ranges::find_if(image.pixels, broken);
+    if (first == image.pixels.end()) return;
+    const auto index = static_cast<int>(first - image.pixels.begin());
+    const auto count = static_cast<size_t>(std::count_if(first, image.pixels.end(), broken));
+    refuse(where, count_text(count, "pixel") + (count == 1 ? " is" : " are") + " not finite (inf or NaN), " +
+                      (count == 1 ? "" : "the first one ") + "at x " + std::to_string(index % image.size.x) + ", y " +
+                      std::to_string(index / image.size.x) +
+                      " from the upper left; give them a value, for example with oiiotool --fixnan box3");
+}
+
 Image<vec3> decode_floats(std::string_view bytes, std::string_view where, std::string& note) {
     Image<vec3> image = image_format(bytes) == ImageFormat::radiance ? decode_radiance(bytes, where, note)
                                                                      : decode_openexr(bytes, where, note);
-    for (const vec3& pixel : image.pixels)
-        if (!is_finite(pixel)) refuse(where, "the image holds a value that is not finite");
+    check_finite(image, where);
     return image;
 }
 }
