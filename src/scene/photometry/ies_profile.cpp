@@ -138,6 +138,14 @@ std::string loss_of(const IesFile& file, const Lattice& lattice, double peak) {
 }
 }
 
+namespace {
+// Degrees over which the light may change: the file's smallest step, but at least 1 degree or 1/64 of a narrow beam,
+// which limits the nodes along rays through it.
+double detail_of(const IesFile& file, double reach) {
+    return std::max(smallest_gap(file.vertical), std::min(2 * reach / 64, 1.0));
+}
+}
+
 std::shared_ptr<const IesProfile> make_ies_profile(const IesFile& file, std::string content) {
     constexpr double rounding = 1e-6;
     auto profile = std::make_shared<IesProfile>();
@@ -161,7 +169,7 @@ std::shared_ptr<const IesProfile> make_ies_profile(const IesFile& file, std::str
     profile->rows_per_radian = static_cast<float>(1 / (row * to_radians));
     profile->columns_per_radian = static_cast<float>(1 / (column * to_radians));
     profile->reach = static_cast<float>(reach_of(*profile, lattice) * to_radians);
-    profile->detail = static_cast<float>(std::max(smallest_gap(file.vertical), 1.0) * to_radians);
+    profile->detail = static_cast<float>(detail_of(file, profile->reach / to_radians) * to_radians);
     return profile;
 }
 
