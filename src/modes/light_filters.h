@@ -23,10 +23,10 @@ void average_filters(Snapshot& snapshot);
 void add_mean_filters(const Snapshot& snapshot, Limitations& limitations);
 
 // Reports filters that rays sample at `nodes` jittered nodes across a light's beam: gobos too fine for quadrature, or
-// all filters.
+// all filters, other than the cosine emission of faces.
 enum class Sampled { fine_gobos, all_filters };
 void add_sampled_filters(const Snapshot& snapshot, Sampled which, double nodes, Limitations& limitations);
 
-// Reports a filter with detail finer than `angle`, radians, which is blurred.
+// Reports a profile or gobo with detail finer than `angle`, radians, which is blurred.
 void add_blurred_filter(const Light& light, float angle, Limitations& limitations);
 }

@@ -62,6 +62,8 @@ std::shared_ptr<Gobo> make_gobo(std::string_view bytes, ColorSpace space, std::s
                 " pixels, downsampled by a factor of " + std::to_string(picture.factor);
     std::shared_ptr<Gobo> gobo = gobo_of(picture);
     gobo->content = content_hash(bytes);
+    if (std::ranges::all_of(gobo->levels[0].values, [](float value) { return value == 0; }))
+        note += std::string(note.empty() ? "" : "; ") + "the image is black";
     return gobo;
 }
 

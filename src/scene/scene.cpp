@@ -43,6 +43,12 @@ mat4 node_matrix(const Scene& scene, int node, double seconds) {
     return world;
 }
 
+bool is_hidden(const Scene& scene, const LightSource& light, double seconds) {
+    if (light.node < 0) return false;
+    const mat4 matrix = node_matrix(scene, light.node, seconds);
+    return is_finite(vec3(matrix[3])) && glm::length(vec3(matrix[2])) == 0;
+}
+
 mat4 medium_matrix(const MediumSource& medium, double seconds) {
     const mat4 turned = glm::translate(mat4(1), medium.translation.at(seconds)) *
                         glm::mat4_cast(glm::normalize(medium.rotation.at(seconds)));

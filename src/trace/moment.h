@@ -42,7 +42,8 @@ struct NodeFrame {
     vec3 position, up, forward;
 };
 
-// Throws Error (refused) that begins with `what` if the node's transform is singular or not finite.
+// Throws Error (refused) that begins with `what` if the node's transform is singular or not finite; not for lights with
+// is_hidden().
 NodeFrame node_frame(const Scene& scene, int node, double seconds, const std::string& what);
 
 Camera camera_at(const Scene& scene, int camera, double seconds);

@@ -44,6 +44,10 @@ Light light_at(const Scene& scene, const LightSource& source, const Moment& mome
     up = source.up.at(seconds);
     light.name = source.name;
     light.kind = source.kind;
+    if (is_hidden(scene, source, seconds)) {
+        light.intensity = vec3(0);
+        return light;
+    }
     if (source.node >= 0) {
         const NodeFrame frame = node_frame(scene, source.node, seconds, named("light", source.name));
         light.position = frame.position, light.direction = frame.forward, up = frame.up;

@@ -3,6 +3,7 @@
 #include "base/image.h"
 #include "base/random.h"
 #include "modes/area_light_limitations.h"
+#include "modes/light_filters.h"
 #include "modes/path/path_rays.h"
 #include "modes/shared_limitations.h"
 #include "scene/gobo.h"
@@ -316,6 +317,17 @@ TEST(FaceLight, PictureOfHalfIsHalfTheFaceOnSurfacesAndAfterManyOrders) {
     const double from_picture = marched_light(snapshot_of({fog}, {light}), ray, 1 << 6, settings).value.x;
     const double from_half = marched_light(snapshot_of({fog}, {half}), ray, 1 << 6, settings).value.x;
     EXPECT_NEAR(from_picture, from_half, 0.04 * from_half);
+}
+
+TEST(FaceLight, CosineEmissionIsNoProfile) {
+    const Light face = rectangle_light({0, 1, -3}, {0, -1, 0}, {0.1f, 0.1f}, vec3(1));
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.5f, wide_box)}, {face});
+    const View view = view_of({0, 0, 0}, {0, 0, -1}, {48, 27});
+    for (const Mode& mode : modes()) {
+        const Limitations limitations = mode.limitations(view, snapshot, {});
+        EXPECT_FALSE(has_limitation(limitations, limitation::blurred_filter)) << mode.name;
+        EXPECT_FALSE(has_limitation(limitations, limitation::sampled_gobo)) << mode.name;
+    }
 }
 
 TEST(FaceLight, OthersSayWhereALampStandsForIt) {

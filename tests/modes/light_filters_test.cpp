@@ -88,6 +88,29 @@ TEST(LightFilters, FogUnderACosineLobeIsItsQuadrature) {
         EXPECT_NEAR(marched(snapshot, settings, ray).radiance.x / (scale * expected), 1, 2e-3);
 }
 
+TEST(LightFilters, MarchFindsALaserInFog) {
+    // A beam of 0.03 degrees, in steps of 0.02 of a table that reaches 0.4, crossed at a right angle.
+    std::string angles, values;
+    for (int i = 0; i <= 20; ++i)
+        angles += std::to_string(0.02 * i) + " ", values += std::to_string(std::exp(-0.2222 * i * i)) + " ";
+    const auto profile = profile_of("1 -1 1 22 1 1 2 0 0 0\n1 1 0\n" + angles + " 90\n0\n" + values + " 0\n");
+    Light light = point_light({0, 1, 0}, 1e4f);
+    light.kind = LightKind::spot, light.direction = {0, -1, 0};
+    light.inner_cone = light.outer_cone = profile->reach;
+    light = filtered_light(light, profile, nullptr);
+    const Ray ray{{-0.5f, 0, 0}, {1, 0, 0}, 1};
+    double expected = 0;
+    constexpr int n = 200000;
+    for (int i = 0; i < n; ++i) {
+        const dvec3 off(0.02 * ((i + 0.5) / n - 0.5), -1, 0);
+        expected += profile_factor(*profile, {off.x, 0, 1}) / glm::dot(off, off) * 0.02 / n;
+    }
+    const double scale = 1e4 * 1e-4 / (4 * double{pi});
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(1e-4f, room, {PhaseKind::isotropic, 0})}, {light});
+    for (const Settings& settings : {exact_settings(), sliced_settings(), Settings{}})
+        EXPECT_NEAR(marched(snapshot, settings, ray).radiance.x / (scale * expected), 1, 0.01);
+}
+
 TEST(LightFilters, EveryTechniqueFollowsABroadGobo) {
     const std::vector<Medium> fog{homogeneous_medium(0.25f, room, forward_phase(0.3f))};
     for (const bool colors : {false, true}) {

@@ -59,6 +59,27 @@ TEST(Gobo, NumbersAreLightAsTheColorSpaceSays) {
     EXPECT_EQ(letter()->planes, 1);
 }
 
+TEST(Gobo, SixteenBitsAreKept) {
+    std::string note;
+    const std::string bytes = png16_of({2, 1}, {{100, 100, 100, 65535}, {40000, 40000, 40000, 30000}});
+    const auto linear = make_gobo(bytes, ColorSpace::linear, "gobo.png", note);
+    EXPECT_NEAR(gobo_at(*linear, 0.25, 0.5).x, 100.0 / 65535, 1e-8);
+    EXPECT_NEAR(gobo_at(*linear, 0.75, 0.5).x, 40000.0 / 65535 * 30000 / 65535, 1e-6);
+    EXPECT_NEAR(gobo_at(*make_gobo(bytes, ColorSpace::srgb, "gobo.png", note), 0.25, 0.5).x, 100.0 / 65535 / 12.92,
+                1e-9);
+    const Image<vec4> texture = decode_texture(bytes, "texture.png");
+    EXPECT_NEAR(texture.at(0, 0).x, 100.0 / 65535 / 12.92, 1e-9);
+    EXPECT_NEAR(texture.at(1, 0).w, 30000.0 / 65535, 1e-7);
+}
+
+TEST(Gobo, BlackOnesAreSaid) {
+    for (const Texel texel : {black, clear, gray}) {
+        std::string note;
+        make_gobo(png_of({2, 1}, {black, texel}), ColorSpace::srgb, "gobo.png", note);
+        EXPECT_EQ(note, texel == gray ? "" : "the image is black");
+    }
+}
+
 TEST(Gobo, LevelsKeepTheMean) {
     std::vector<Texel> texels;
     for (int i = 0; i < 37 * 21; ++i) texels.push_back(i % 3 && i % 7 ? white : black);

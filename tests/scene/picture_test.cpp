@@ -87,7 +87,12 @@ TEST(ImageFile, OpenExrThatIsNoPicture) {
     EXPECT_THAT(refusal(whole.substr(0, whole.size() - 4)), HasSubstr("sky.exr"));
     EXPECT_THAT(refusal(openexr_of(folder, {16000, 16000}, {0, 0}, pixels)), HasSubstr("less than 1/16"));
     pixels.at(1, 0).y = std::numeric_limits<float>::infinity();
-    EXPECT_THAT(refusal(openexr_of(folder, {2, 1}, {0, 0}, pixels)), HasSubstr("not finite"));
+    EXPECT_THAT(refusal(openexr_of(folder, {2, 1}, {0, 0}, pixels)),
+                HasSubstr("1 pixel is not finite (inf or NaN), at x 1, y 0 from the upper left; "));
+    Image<vec3> larger({5, 4}, vec3(1));
+    larger.at(3, 2).x = std::numeric_limits<float>::quiet_NaN(), larger.at(0, 3) = vec3(-1 / 0.0f);
+    EXPECT_THAT(refusal(openexr_of(folder, {6, 4}, {1, 0}, larger)),
+                HasSubstr("2 pixels are not finite (inf or NaN), the first one at x 4, y 2 from the upper left; "));
 }
 }
 }

@@ -43,6 +43,26 @@ MediumSource file_source(const std::filesystem::path& file) {
     return source;
 }
 
+TEST(Snapshot, ScaleZeroHidesLights) {
+    Scene scene;
+    Node parent, node;
+    parent.scale = from_to(vec3(0), vec3(1)), node.parent = 0;
+    scene.nodes = {parent, node};
+    LightSource lamp;
+    lamp.name = "lamp", lamp.kind = LightKind::spot, lamp.node = 1, lamp.intensity = 10.0f;
+    scene.lights = {lamp};
+    EXPECT_TRUE(make_snapshot(scene, Moment{0, 0}).lights.empty());
+    EXPECT_EQ(make_snapshot(scene, Moment{12, 0.5}).lights.size(), 1u);
+    scene.nodes[1].scale = vec3(1, 1, 0); // flattened along its direction
+    EXPECT_TRUE(make_snapshot(scene, Moment{12, 0.5}).lights.empty());
+    scene.nodes[1].scale = vec3(0, 1, 1);
+    EXPECT_EQ(make_snapshot(scene, Moment{12, 0.5}).lights.size(), 1u);
+    scene.nodes[1].scale = vec3(1, 1, std::numeric_limits<float>::quiet_NaN());
+    EXPECT_THROW(make_snapshot(scene, Moment{12, 0.5}), Error);
+    scene.nodes[1].scale = vec3(0), scene.nodes[1].translation = vec3(std::numeric_limits<float>::infinity());
+    EXPECT_THROW(make_snapshot(scene, Moment{12, 0.5}), Error);
+}
+
 TEST(Snapshot, EvaluatesLightsAndDropsDarkOnes) {
     Scene scene;
     Node node;

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "scene/file/scene_file.h"
 #include "scene/photometry/ies_file.h"
+#include "scene/photometry/ies_profile.h"
 
 namespace tyndall {
 namespace {
@@ -63,7 +64,8 @@ std::string json_text(const std::filesystem::path& path, const IesFile& file, do
 }
 
 std::string ies_report(const std::filesystem::path& path, bool json) {
-    const IesFile file = read_ies(read_file(path, largest_ies_file), path.string());
+    IesFile file = read_ies(read_file(path, largest_ies_file), path.string());
+    if (std::string loss = make_ies_profile(file, "")->loss; !loss.empty()) file.notes.push_back(std::move(loss));
     const double lumens = zonal_lumens(file);
     if (json) return json_text(path, file, lumens);
     std::string text =

@@ -187,6 +187,11 @@ Problem likeliest_problem(const Json& value, std::vector<Branch> branches, const
         return SchemaProblem{pointer, what};
     if (value.kind == Json::Kind::object && branches.size() > 1)
         if (Problem problem = narrow_by_member(value, branches, root, pointer)) return problem;
+    const auto lists_other_kinds = [&](const Branch& branch) { // names where the value is an array
+        const auto here = allowed_values(*branch.schema);
+        return !here.empty() && std::ranges::none_of(here, [&](const Json* one) { return one->kind == value.kind; });
+    };
+    if (!std::ranges::all_of(branches, lists_other_kinds)) std::erase_if(branches, lists_other_kinds);
 
     const auto better = [&](const Branch& a, const Branch& b) {
         const int like_a = likeness(value, a), like_b = likeness(value, b);

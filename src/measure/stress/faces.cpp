@@ -15,10 +15,10 @@
 
 namespace tyndall {
 namespace {
-const std::vector<Excuse> excuses{
-    {&limitation::lamp_for_face},      {&limitation::blurred_filter}, {&limitation::hard_shadows},
-    {&limitation::coarse_shafts},      {&limitation::grainy_edges},   {&limitation::no_shadows, 3},
-    {&limitation::few_steps_for_glow}, {&limitation::deep_steps},     {&limitation::deep_froxels}};
+const std::vector<Excuse> excuses{{&limitation::lamp_for_face}, {&limitation::hard_shadows},
+                                  {&limitation::coarse_shafts}, {&limitation::grainy_edges},
+                                  {&limitation::no_shadows, 3}, {&limitation::few_steps_for_glow},
+                                  {&limitation::deep_steps},    {&limitation::deep_froxels}};
 const Camera beside = camera_from({0, 0.2f, 5}, {0, 0.2f, 0});
 
 StressScene lit_by(Light face, Camera camera = beside, Medium haze = thin_haze(), std::vector<Mesh> meshes = {}) {

@@ -61,7 +61,9 @@ void read_light_power(const Field& field, LightSource& light) {
 std::shared_ptr<const IesProfile> read_profile(std::string_view bytes, std::string_view where, Scene& scene) {
     const IesFile file = read_ies(bytes, where);
     for (const std::string& note : file.notes) warn(scene, std::string(where) + ": " + note);
-    return make_ies_profile(file, content_hash(bytes));
+    auto profile = make_ies_profile(file, content_hash(bytes));
+    if (!profile->loss.empty()) warn(scene, std::string(where) + ": " + profile->loss);
+    return profile;
 }
 
 void read_profile(const Field& field, Scene& scene, LightSource& light) {

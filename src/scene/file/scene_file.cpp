@@ -60,6 +60,24 @@ void warn_of_endless_fog(Scene& scene) {
                             sun->name + " gets through; give it \"bounds\"");
 }
 
+// Notes lights that the scale of a node turns off, always or at some keys.
+void note_hidden_lights(Scene& scene) {
+    for (const LightSource& light : scene.lights) {
+        bool hidden = is_hidden(scene, light, 0), animated = false;
+        for (int node = light.node; node >= 0; node = scene.nodes[static_cast<size_t>(node)].parent) {
+            const Keyed<vec3>& scale = scene.nodes[static_cast<size_t>(node)].scale;
+            animated |= !scale.constant();
+            for (size_t i = 0; i < scale.times.size() && !hidden; ++i) {
+                const vec3 size = scale.at(scale.times[i]);
+                hidden = size.x * size.y * size.z == 0 && is_hidden(scene, light, scale.times[i]);
+            }
+        }
+        if (hidden)
+            warn(scene, scene.file.string() + ": " + named("light", light.name) + " is off" +
+                            (animated ? " while its node has a scale of 0" : ": its node has a scale of 0"));
+    }
+}
+
 void read_scene_document(const Json& document, Scene& scene, const LoadOptions& options) {
     const Field root{&document, scene.file.string(), ""};
     read_general(root, scene);
@@ -79,6 +97,7 @@ void read_scene_document(const Json& document, Scene& scene, const LoadOptions& 
     read_billboards(root, scene);
     if (is_dark(scene)) warn(scene, root.file + ": there is no light: everything will be black");
     warn_of_endless_fog(scene);
+    note_hidden_lights(scene);
 }
 }
 
@@ -126,6 +145,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
     if (extension == ".gltf" || extension == ".glb") {
         load_gltf(file, options, scene);
         scene.origin = far_origin({}, scene);
+        note_hidden_lights(scene);
         add_missing_light_and_fog(scene);
     } else {
         const std::string text = read_file(file);

@@ -112,8 +112,8 @@ private:
         if (value.kind == Json::Kind::number && value.number >= 0 && value.number < static_cast<double>(count) &&
             value.number == std::floor(value.number))
             return;
-        wrong(value, pointer,
-              "an index into \"" + std::string(collection) + "\", which has " + count_text(count, "element"));
+        const std::string name = collection == "profiles" ? "\"lights\" of EXT_lights_ies" : quote_json(collection);
+        wrong(value, pointer, "an index into " + name + ", which has " + count_text(count, "element"));
     }
 
     void index_map(const Json& value, std::string_view collection, const std::string& pointer) const {

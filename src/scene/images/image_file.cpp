@@ -4,11 +4,14 @@
 #include "base/exr/exr_picture.h"
 #include "base/io/file.h"
 #include "base/srgb.h"
+#include "base/text.h"
 #include "scene/images/radiance_file.h"
 
 #include <algorithm>
-#include <array>
+#include <limits>
 #include <memory>
+#include <type_traits>
+#include <vector>
 
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
@@ -46,13 +49,41 @@ void check_length(std::string_view bytes, std::string_view where) {
     refuse(where, reason == "outofdata" ? "the image is truncated" : "the image is truncated or damaged");
 }
 
-const std::array<float, 256>& linear_table() {
-    static const std::array<float, 256> table = [] {
-        std::array<float, 256> values;
-        for (int i = 0; i < 256; ++i) values[i] = srgb_decoded(i / 255.0f);
+// sRGB codes of 8 or 16 bits to linear light.
+template<class Code> const std::vector<float>& linear_table() {
+    constexpr size_t last = std::numeric_limits<Code>::max();
+    static const std::vector<float> table = [] {
+        std::vector<float> values(last + 1);
+        for (size_t i = 0; i <= last; ++i) values[i] = srgb_decoded(static_cast<float>(i) / static_cast<float>(last));
         return values;
     }();
     return table;
+}
+
+// Calls `visit` with the index, color in 0..1 and alpha of every texel; `linear`: the color is not sRGB.
+template<class Code, class Visit> void visit_codes(const Code* codes, ivec2 size, bool linear, const Visit& visit) {
+    constexpr auto last = static_cast<float>(std::numeric_limits<Code>::max());
+    const std::vector<float>& table = linear_table<Code>();
+    const auto color = [&](Code code) { return linear ? static_cast<float>(code) / last : table[code]; };
+    for (size_t i = 0; i < static_cast<size_t>(size.x) * size.y; ++i, codes += 4)
+        visit(i, vec3(color(codes[0]), color(codes[1]), color(codes[2])), static_cast<float>(codes[3]) / last);
+}
+
+// The same for a PNG or JPEG; PNGs of 16 bits keep them. Throws Error (refused) naming `where`.
+template<class Visit>
+void visit_texels(std::string_view bytes, std::string_view where, bool linear, const Visit& visit) {
+    const int length = static_cast<int>(bytes.size());
+    ivec2 size(0);
+    int channels;
+    const auto visit_all = [&](auto* codes) {
+        const std::unique_ptr<std::remove_pointer_t<decltype(codes)>, Free> data(codes);
+        if (!data) refuse_damaged(where);
+        visit_codes(codes, size, linear, visit);
+    };
+    if (stbi_is_16_bit_from_memory(start(bytes), length))
+        visit_all(stbi_load_16_from_memory(start(bytes), length, &size.x, &size.y, &channels, 4));
+    else
+        visit_all(stbi_load_from_memory(start(bytes), length, &size.x, &size.y, &channels, 4));
 }
 
 // In the display window, black where the file has no pixels.
@@ -68,11 +99,22 @@ Image<vec3> decode_openexr(std::string_view bytes, std::string_view where, std::
 
 bool holds_floats(ImageFormat format) { return format == ImageFormat::radiance || format == ImageFormat::openexr; }
 
+void check_finite(const Image<vec3>& image, std::string_view where) {
+    const auto broken = [](const vec3& pixel) { return !is_finite(pixel); };
+    const auto first = std::ranges::find_if(image.pixels, broken);
+    if (first == image.pixels.end()) return;
+    const auto index = static_cast<int>(first - image.pixels.begin());
+    const auto count = static_cast<size_t>(std::count_if(first, image.pixels.end(), broken));
+    refuse(where, count_text(count, "pixel") + (count == 1 ? " is" : " are") + " not finite (inf or NaN), " +
+                      (count == 1 ? "" : "the first one ") + "at x " + std::to_string(index % image.size.x) + ", y " +
+                      std::to_string(index / image.size.x) +
+                      " from the upper left; give them a value, for example with oiiotool --fixnan box3");
+}
+
 Image<vec3> decode_floats(std::string_view bytes, std::string_view where, std::string& note) {
     Image<vec3> image = image_format(bytes) == ImageFormat::radiance ? decode_radiance(bytes, where, note)
                                                                      : decode_openexr(bytes, where, note);
-    for (const vec3& pixel : image.pixels)
-        if (!is_finite(pixel)) refuse(where, "the image holds a value that is not finite");
+    check_finite(image, where);
     return image;
 }
 }
@@ -106,18 +148,8 @@ ivec2 image_size(std::string_view bytes, std::string_view where) {
 Image<vec4> decode_texture(std::string_view bytes, std::string_view where) {
     const ImageFormat format = image_format(bytes);
     if (format != ImageFormat::png && format != ImageFormat::jpeg) refuse(where, "the image is neither PNG nor JPEG");
-    ivec2 size = image_size(bytes, where);
-    int channels;
-    const std::unique_ptr<stbi_uc, Free> data(
-        stbi_load_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels, 4));
-    if (!data) refuse_damaged(where);
-
-    const std::array<float, 256>& table = linear_table();
-    Image<vec4> image(size);
-    for (size_t i = 0; i < image.pixels.size(); ++i) {
-        const stbi_uc* texel = data.get() + 4 * i;
-        image.pixels[i] = {table[texel[0]], table[texel[1]], table[texel[2]], texel[3] / 255.0f};
-    }
+    Image<vec4> image(image_size(bytes, where));
+    visit_texels(bytes, where, false, [&](size_t i, vec3 color, float alpha) { image.pixels[i] = {color, alpha}; });
     return image;
 }
 
@@ -144,14 +176,11 @@ Image<vec3> decode_image(std::string_view bytes, std::string_view where, std::st
 }
 
 namespace {
-// Averages the blocks of an image whose pixel colors are `color_of(pixel)`.
-template<class Color> void add_blocks(ReducedImage& picture, const Color& color_of) {
+// Adds a pixel's share to its block's mean.
+void add_to_block(ReducedImage& picture, size_t pixel, vec3 color) {
     const float share = 1 / static_cast<float>(picture.factor * picture.factor);
-    picture.image = Image<vec3>((picture.size + picture.factor - 1) / picture.factor);
-    for (int y = 0; y < picture.size.y; ++y)
-        for (int x = 0; x < picture.size.x; ++x)
-            picture.image.at(x / picture.factor, y / picture.factor) +=
-                share * color_of(static_cast<size_t>(y) * picture.size.x + x);
+    const int x = static_cast<int>(pixel % picture.size.x), y = static_cast<int>(pixel / picture.size.x);
+    picture.image.at(x / picture.factor, y / picture.factor) += share * color;
 }
 }
 
@@ -165,21 +194,14 @@ ReducedImage decode_reduced(std::string_view bytes, bool linear, int largest, in
         refuse(where, "the image has " + std::to_string(picture.size.x) + "x" + std::to_string(picture.size.y) +
                           " pixels; at most " + std::to_string(limit) + " on a side can be used here");
     picture.factor = (side + most - 1) / most;
+    picture.image = Image<vec3>((picture.size + picture.factor - 1) / picture.factor);
     if (holds_floats(format)) {
         const Image<vec3> pixels = decode_floats(bytes, where, note);
-        add_blocks(picture, [&](size_t pixel) { return pixels.pixels[pixel]; });
-        return picture;
+        for (size_t i = 0; i < pixels.pixels.size(); ++i) add_to_block(picture, i, pixels.pixels[i]);
+    } else {
+        visit_texels(bytes, where, linear,
+                     [&](size_t i, vec3 color, float alpha) { add_to_block(picture, i, color * alpha); });
     }
-    int channels;
-    const std::unique_ptr<stbi_uc, Free> data(stbi_load_from_memory(start(bytes), static_cast<int>(bytes.size()),
-                                                                    &picture.size.x, &picture.size.y, &channels, 4));
-    if (!data) refuse_damaged(where);
-    std::array<float, 256> table = linear_table();
-    for (int i = 0; i < 256 && linear; ++i) table[static_cast<size_t>(i)] = static_cast<float>(i) / 255;
-    add_blocks(picture, [&](size_t pixel) {
-        const stbi_uc* texel = data.get() + 4 * pixel;
-        return vec3(table[texel[0]], table[texel[1]], table[texel[2]]) * (texel[3] / 255.0f);
-    });
     return picture;
 }
 

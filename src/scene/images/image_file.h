@@ -16,7 +16,7 @@ ImageFormat image_format(std::string_view bytes);
 // Size from the header alone. Throws Error (refused) naming `where` when there is none or a side is over the limit.
 ivec2 image_size(std::string_view bytes, std::string_view where);
 
-// sRGB bytes to linear color, alpha as it is. Throws Error (refused) naming `where`.
+// sRGB codes of 8 or 16 bits to linear color, alpha as it is. Throws Error (refused) naming `where`.
 Image<vec4> decode_texture(std::string_view bytes, std::string_view where);
 
 // Decodes an image for backgrounds: sRGB PNG or JPEG, Radiance .hdr or OpenEXR (its display window, black where there

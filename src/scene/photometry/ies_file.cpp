@@ -19,11 +19,18 @@ std::string_view trimmed(std::string_view text) {
     return text;
 }
 
-bool starts_with_tilt(std::string_view line) {
-    constexpr std::string_view word = "TILT=";
-    return line.size() >= word.size() && std::equal(word.begin(), word.end(), line.begin(), [](char a, char b) {
-               return a == std::toupper(static_cast<unsigned char>(b));
-           });
+std::string upper(std::string_view text) {
+    std::string result(text);
+    for (char& c : result) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    return result;
+}
+
+// What follows "TILT=", which may have blanks around the sign.
+std::optional<std::string_view> tilt_of(std::string_view line) {
+    if (upper(line.substr(0, 4)) != "TILT") return {};
+    line = trimmed(line.substr(4));
+    if (!line.starts_with('=')) return {};
+    return trimmed(line.substr(1));
 }
 
 // Reads the file from start to end, line by line at first, then number by number.
@@ -110,10 +117,10 @@ private:
     size_t line_ = 0;
 };
 
-// "IESNA:LM-63-2002", "IESNA91", "IES:LM-63-2019"; any other first line means LM-63-1986.
-std::string standard_of(std::string_view line) {
-    if (const size_t at = line.find("LM-63-"); line.starts_with("IES") && at != line.npos)
-        return std::string(line.substr(at, 10));
+// "IESNA:LM-63-2002", "IESNA91", "IES:LM-63-2019", in any case; any other first line means LM-63-1986.
+std::string standard_of(std::string_view first_line) {
+    const std::string line = upper(first_line);
+    if (const size_t at = line.find("LM-63-"); line.starts_with("IES") && at != line.npos) return line.substr(at, 10);
     if (line == "IESNA91") return "LM-63-1991";
     return line.starts_with("IESNA95") ? "LM-63-1995" : "LM-63-1986";
 }
@@ -123,8 +130,8 @@ void read_head(Reader& reader, IesFile& file) {
     bool first = true;
     while (const std::optional<std::string_view> line = reader.line()) {
         if (first && !line->empty()) file.standard = standard_of(*line), first = false;
-        if (starts_with_tilt(*line)) {
-            file.tilt = trimmed(line->substr(5));
+        if (const std::optional<std::string_view> tilt = tilt_of(*line)) {
+            file.tilt = *tilt;
             return;
         }
         const size_t end = line->find(']');
@@ -140,17 +147,16 @@ void read_head(Reader& reader, IesFile& file) {
 
 // Reads the tilt factors, which are not applied, as the luminaire's mounting is unknown.
 void read_tilt(Reader& reader, IesFile& file) {
-    std::string upper = file.tilt;
-    for (char& c : upper) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (upper == "NONE") {
-        file.tilt = upper;
+    const std::string word = upper(file.tilt);
+    if (word == "NONE") {
+        file.tilt = word;
         return;
     }
-    if (upper != "INCLUDE") {
+    if (word != "INCLUDE") {
         file.notes.push_back("the tilt factors in \"" + printable(file.tilt, 60) + "\" are ignored");
         return;
     }
-    file.tilt = upper;
+    file.tilt = word;
     reader.number("the lamp's position");
     const size_t count = reader.count("the number of tilt angles", 1);
     reader.numbers(count, "a tilt angle");
@@ -162,14 +168,20 @@ void read_tilt(Reader& reader, IesFile& file) {
 
 // Vertical or horizontal angles, which must ascend.
 std::vector<double> read_angles(Reader& reader, size_t count, const char* what, double low, double high) {
-    std::vector<double> angles = reader.numbers(count, what);
+    constexpr double closest = 1e-6; // degrees, so that the flux between them can be computed
+    const std::vector<double> given = reader.numbers(count, what);
+    std::vector<double> angles = given;
     for (size_t i = 0; i < count; ++i) {
-        if (i && !(angles[i] > angles[i - 1]))
+        if (i && !(given[i] > given[i - 1] + closest))
             reader.fail_at(std::string(what) + " is not above the previous one; angles must ascend");
-        if (angles[i] < low - 0.01 || angles[i] > high + 0.01)
-            reader.fail_at(std::string(what) + " is " + shortest_text(angles[i]) + ", not between " +
+        if (given[i] < low - 0.01 || given[i] > high + 0.01)
+            reader.fail_at(std::string(what) + " is " + shortest_text(given[i]) + ", not between " +
                            shortest_text(low) + " and " + shortest_text(high));
-        angles[i] = std::clamp(angles[i], low, high);
+        angles[i] = std::clamp(given[i], low, high);
+        if (i && !(angles[i] > angles[i - 1] + closest))
+            reader.fail_at(std::string(what) + " is " + shortest_text(given[i - 1]) + " and the next one " +
+                           shortest_text(given[i]) + ": both count as " + shortest_text(angles[i]) +
+                           "; angles must ascend");
     }
     return angles;
 }

@@ -11,7 +11,8 @@ struct IesFile;
 
 struct IesProfile {
     std::string content;         // hash of the file
-    double peak = 0, lumens = 0; // candela; total flux
+    std::string loss;            // what the table loses of the file, one line; empty if nothing to speak of
+    double peak = 0, lumens = 0; // candela of the table; total flux, the same as the file's
     float reach = pi;            // radians from the aim beyond which no light is emitted
     float detail = 0;            // radians over which the light may change
     int rows = 0, columns = 1;   // vertical angles; horizontal angles once around, the last the same as the first
@@ -20,8 +21,8 @@ struct IesProfile {
     std::vector<float> shares; // fractions of the peak: [column · rows + row]
 };
 
-// Exact if the file's angles are multiples of a step of at least 0.1 (horizontal 0.5) degrees, as they nearly always
-// are; else resampled with that step. Types A and B are converted to type C.
+// Exact if the file's angles are multiples of a step of 0.01 (horizontal 0.1) degrees, or 0.1 (0.5) if there are very
+// many, as they nearly always are; else resampled, with the file's lumens. Types A and B are converted to type C.
 std::shared_ptr<const IesProfile> make_ies_profile(const IesFile& file, std::string content);
 
 // Intensity in a unit direction as a fraction of the peak, in the axes of candela_at().

@@ -25,7 +25,8 @@ LightPlacement light_placement(const Scene& scene, size_t light, double seconds)
         return {source.position.at(seconds), length > 0 ? direction / length : vec3(0, -1, 0), source.up.at(seconds)};
     }
     const mat4 matrix = node_matrix(scene, source.node, seconds);
-    return {vec3(matrix[3]), -glm::normalize(vec3(matrix[2])), vec3(matrix[1])};
+    const vec3 back(matrix[2]);
+    return {vec3(matrix[3]), glm::length(back) > 0 ? -glm::normalize(back) : vec3(0, -1, 0), vec3(matrix[1])};
 }
 
 vec3 value_at(const Scene& scene, const Property& property, size_t index, double seconds) {

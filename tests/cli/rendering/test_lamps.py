@@ -153,7 +153,7 @@ class Lamps(ProgramTest):
         content["extensions"]["EXT_lights_ies"]["lights"] = [{}]
         self.refuse(3, ["EXT_lights_ies/lights/0", "uri"], "info", self.write("lamp.gltf", content))
         content["nodes"][1] = {"extensions": {"EXT_lights_ies": {"light": 4}}}
-        self.refuse(3, ["light"], "info", self.write("lamp.gltf", content))
+        self.refuse(3, ['index into "lights" of EXT_lights_ies'], "info", self.write("lamp.gltf", content))
 
     def test_march_agrees_with_paths(self):
         self.write("board.png", png((32, 32), lambda x, y: 255 if (x // 4 + y // 4) % 2 else 10))

@@ -81,6 +81,8 @@ const Mistake mistakes[] = {
     {R"("camera": {"position": [0, 0, 1], "target": [0, 0, 0], "shutter": {"open": 0.5}})", "/camera/shutter", "close"},
     {R"("camera": {"position": [0, 0, 1], "target": [0, 0, 0], "shutter": {"close": 1, "curve": [0, 0, 0]}})",
      "/camera/shutter/curve", "no light"},
+    {R"("camera": {"position": [0, 0, 1], "target": [0, 0, 0], "shutter": {"close": 1, "curve": [1]}})",
+     "/camera/shutter/curve", "at least 2 items"},
     {R"("camera": {"position": [0, 0, 1], "target": [0, 0, 0], "shutter": {"close": 1, "curve": [1, -1]}})",
      "/camera/shutter/curve", ""},
     {R"("camera": {"position": [0, 0, 1], "target": [0, 0, 0], "shutter": 0.5})", "/camera/shutter", "object"},

@@ -1,5 +1,6 @@
 // What a glTF holds arrives in the scene.
 #include "scene/images.h"
+#include "support/expect.h"
 #include "support/gltf_builder.h"
 #include "support/load_answer.h"
 #include "support/scratch.h"
@@ -198,6 +199,24 @@ TEST(Gltf, CamerasKeepTheirVerticalAngle) {
     EXPECT_EQ(scene.cameras[1].far, 50);
     EXPECT_NE(scene.cameras[0].name, scene.cameras[1].name);
     EXPECT_FALSE(has_warning(scene, "no camera"));
+}
+
+TEST(Gltf, LightsHiddenByScaleAreNoted) {
+    GltfBuilder gltf = triangle_gltf();
+    gltf.members["extensions"] = R"({"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{}}]}})";
+    gltf.members["nodes"] = R"([{"mesh":0},{"name":"gone","scale":[0,0,0],"children":[2]},
+        {"name":"lamp","extensions":{"KHR_lights_punctual":{"light":0}}}])";
+    gltf.members["scenes"] = R"([{"nodes":[0,1]}])";
+    EXPECT_TRUE(has_warning(loaded(gltf), "light lamp is off: its node has a scale of 0"));
+
+    gltf.members["nodes"] = replaced(gltf.members["nodes"], "[0,0,0]", "[1,1,1]");
+    EXPECT_FALSE(has_warning(loaded(gltf), "light lamp is off"));
+    const int times = gltf.floats({0, 1, 2}, "SCALAR");
+    const int sizes = gltf.floats({1, 1, 1, 0, 0, 0, 1, 1, 1}, "VEC3");
+    gltf.members["animations"] = R"([{"samplers":[{"input":)" + std::to_string(times) + R"(,"output":)" +
+                                 std::to_string(sizes) +
+                                 R"(}],"channels":[{"sampler":0,"target":{"node":1,"path":"scale"}}]}])";
+    EXPECT_TRUE(has_warning(loaded(gltf), "light lamp is off while its node has a scale of 0"));
 }
 
 // Values a little outside their range, as single precision rounds them, are no reason to refuse a file.

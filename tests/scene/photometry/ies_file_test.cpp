@@ -52,6 +52,16 @@ TEST(IesFile, OneNumberALineCommasAndOldLineEndsAreTheSame) {
         EXPECT_EQ(read_ies(text, "a.ies").candela, read_ies(plain, "a.ies").candela);
 }
 
+TEST(IesFile, HeadsInAnyCaseAndBlanksAroundTheTilt) {
+    const std::string older = replaced(plain, "\n1 1 10", "\n.9 .5 10");
+    const IesFile newest = read_ies(replaced(older, "IESNA:LM-63-2002", "ies:lm-63-2019"), "a.ies");
+    EXPECT_EQ(newest.standard, "LM-63-2019");
+    EXPECT_DOUBLE_EQ(newest.peak(), 180);
+    EXPECT_EQ(read_ies(replaced(plain, "IESNA:LM-63-2002", "iesna91"), "a.ies").standard, "LM-63-1991");
+    for (const char* tilt : {"TILT = NONE", "tilt= none", "Tilt =None "})
+        EXPECT_EQ(read_ies(replaced(plain, "TILT=NONE", tilt), "a.ies").tilt, "NONE") << tilt;
+}
+
 TEST(IesFile, PlanesAreMirroredAsTheStandardSays) {
     const auto planes = [](const std::string& angles, const std::string& rows) {
         const auto count = std::to_string(std::count(angles.begin(), angles.end(), ' ') + 1);
@@ -135,6 +145,8 @@ TEST(IesFile, DamagedFilesAreRefusedInOneLine) {
         {replaced(plain, "100 80", "ten 80"), "\"ten\""},
         {replaced(plain, "0 45 90", "0 95 90"), "angles must ascend"},
         {replaced(plain, "0 45 90", "0 45 450"), "450"},
+        {replaced(plain, "0 45 90", "0 180 180.005"), "180 and the next one 180.005: both count as 180"},
+        {replaced(plain, "0 45 90", "-.005 0 90"), "-0.005 and the next one 0: both count as 0"},
         {replaced(plain, "100 80 20", "0 0 0"), "no light"},
         {replaced(plain, "100 80 20", "100,5 80,2 20,1"), "decimal commas"},
         {plain + "7\n", "an angle count is wrong"},
