@@ -230,7 +230,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
     files.before = before.grids ? before.grids->frames.get() : nullptr;
     files.time = sequence_time(scene, source, moment, missing, files.before, snapshot);
     files.now.velocity = files.time.velocity || !files.before ? files.time.velocity : files.before->velocity;
-    files.now.moved = files.time.moved;
+    files.now.frame = files.time.frame, files.now.moved = files.time.moved;
     const bool fog_is_there = (dims || max_component(medium.optics.emission.radiance) > 0) &&
                               find_fog(scene, source, moment, missing, before, files, snapshot, medium);
     fog.grids = nullptr;

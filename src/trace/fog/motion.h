@@ -19,10 +19,10 @@ struct FileVelocity {
 struct SequenceTime {
     int frame = 0;
     float share = 0;
-    double moved = 0; // seconds or frames to move by, times the medium's velocity scale
+    double moved = 0; // seconds or frames to move by, times the medium's velocity scale; 0 where nothing moves
     std::shared_ptr<const FileVelocity> velocity;
 
-    bool between() const { return share > 0 || velocity; }
+    bool between() const { return share > 0 || moved != 0; }
     std::string key() const, content() const; // as FogSource::key and BrickPool::content
 };
 
@@ -31,6 +31,7 @@ struct FogFrames {
     std::vector<FogSource> densities;
     std::array<std::vector<GridProperty>, 4> properties; // albedo, emission, temperature, flame
     std::shared_ptr<const FileVelocity> velocity;
+    int frame = 0;    // as in SequenceTime
     double moved = 0; // as in SequenceTime
 };
 

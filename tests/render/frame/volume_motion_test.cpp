@@ -26,10 +26,10 @@ using ::testing::HasSubstr;
 
 constexpr float voxel = 1.0f / 32;
 
-// A cube of 0.5 m of even fog around a place, with the same velocity in all of its voxels.
-void write_cube(const std::string& file, vec3 center, vec3 velocity, float density = 1) {
-    const ivec3 low = ivec3(glm::round(center / voxel)) - 8, high = low + 15;
-    VdbContent content{{{"density"}, {"vel", true}}, glm::scale(dmat4(1), dvec3(voxel)), {}, {}, {}, {}};
+// A cube of even fog around a place, 16 voxels (0.5 m) wide, with the same velocity in all of its voxels.
+void write_cube(const std::string& file, vec3 center, vec3 velocity, float density = 1, float side = voxel) {
+    const ivec3 low = ivec3(glm::round(center / side)) - 8, high = low + 15;
+    VdbContent content{{{"density"}, {"vel", true}}, glm::scale(dmat4(1), dvec3(side)), {}, {}, {}, {}};
     const ivec3 first = low >> 3, last = high >> 3;
     for (int x = first.x; x <= last.x; ++x)
         for (int y = first.y; y <= last.y; ++y)
@@ -108,6 +108,40 @@ TEST(VolumeMotion, ConstantVelocityBlursToATrapezoid) {
         const float at = (static_cast<float>(x) + 1) / 32 - 1;
         EXPECT_NEAR(layers.alpha.at(x, 32), full * covered(at, 0.4f), 0.06f) << x;
     }
+}
+
+// A fire without smoke has no density, and smoke may be coarser than its fire.
+TEST(VolumeMotion, EmissionMovesWhateverTheDensity) {
+    for (const bool has_smoke : {false, true}) {
+        Moving moving;
+        write_cube(moving.scratch.file("fog.vdb"), vec3(0), {0.4f, 0, 0});
+        moving.move();
+        moving.fog().emission_grid = GridSource{moving.fog().sequence, {"density"}, {}};
+        moving.fog().emission = vec3(1), moving.fog().extinction = has_smoke ? 1e-5f : 0.0f;
+        write_cube(moving.scratch.file("coarse.vdb"), vec3(0), vec3(0), 1, 16 * voxel);
+        moving.fog().sequence.pattern = moving.scratch.file("coarse.vdb");
+        moving.request.time_samples = 64;
+        const FogTravel travel = fog_travel(moving.snapshot(), 0);
+        EXPECT_NEAR(travel.voxels, 0.2 / double{voxel}, 0.3) << has_smoke;
+        EXPECT_GE(travel.places, 20) << has_smoke;
+        const Layers layers = moving.rendered();
+        for (int x = 0; x < 64; ++x) {
+            const float at = (static_cast<float>(x) + 1) / 32 - 1;
+            EXPECT_NEAR(layers.color.at(x, 32).x, 0.5f * covered(at, 0.4f), 0.03f) << has_smoke << " " << x;
+        }
+    }
+}
+
+// A moment at the frame's own time says as much about the speed as any other.
+TEST(VolumeMotion, TheFirstMomentMayBeTheFrames) {
+    Moving moving;
+    write_cube(moving.scratch.file("fog.vdb"), vec3(0), {0.4f, 0, 0});
+    moving.move();
+    moving.scene.cameras[0].shutter = {-0.25, 0.75, {}};
+    moving.request.time_samples = 2;
+    const Snapshot snapshot = moving.snapshot();
+    EXPECT_NEAR(snapshot.moments->at(0).fog_sources[0].bricks->bounds.center().x, -voxel / 2, 0.1f * voxel);
+    EXPECT_NEAR(snapshot.moments->at(1).fog_sources[0].bricks->bounds.center().x, 0.2f - voxel / 2, 0.6f * voxel);
 }
 
 TEST(VolumeMotion, MovesNothingAwayInAnyMode) {
