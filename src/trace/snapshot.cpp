@@ -246,7 +246,11 @@ Snapshot make_snapshot(const Scene& scene, const FrameMoments& frame, const Snap
         const std::optional<double> grown = moments[0].grown;
         moments =
             with_growths(frame.moments, std::min(std::max(wanted, files_wanted(scene, all->front(), seconds)), most));
-        if (moments[0].grown != grown) all->front() = make_snapshot(scene, moments[0], &all->front(), missing, files);
+        if (moments[0].grown == grown) continue;
+        std::vector<std::string> notes = std::move(all->front().notes); // those of files that are now known
+        all->front() = make_snapshot(scene, moments[0], &all->front(), missing, files);
+        std::ranges::move(all->front().notes, std::back_inserter(notes));
+        all->front().notes = std::move(notes);
     }
     Moment middle_moment = frame.middle;
     middle_moment.grown = moments[moments.size() / 2].grown;

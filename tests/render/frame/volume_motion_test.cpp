@@ -23,6 +23,7 @@
 namespace tyndall {
 namespace {
 using ::testing::HasSubstr;
+using ::testing::UnorderedElementsAre;
 
 constexpr float voxel = 1.0f / 32;
 
@@ -205,6 +206,18 @@ TEST(VolumeMotion, TheFirstMomentHasTheFogOfItsRun) {
     const auto fog_of = [&](size_t moment) { return snapshot.moments->at(moment).fog_sources.at(0).bricks; };
     for (size_t moment = 0; moment < 4; ++moment) EXPECT_EQ(fog_of(moment), fog_of(0)) << moment;
     EXPECT_NE(fog_of(4), fog_of(3));
+}
+
+TEST(VolumeMotion, SaysWhatWasRepairedInItsFiles) {
+    Moving moving;
+    write_cube(moving.scratch.file("fog.vdb"), vec3(0), {voxel, std::nanf(""), 0}); // two runs: the first is made again
+    write_cube(moving.scratch.file("odd.vdb"), vec3(0), vec3(0), 1e5f);
+    moving.move();
+    moving.fog().emission_grid = GridSource{{moving.scratch.file("odd.vdb"), {}, 0, {}}, {"density"}, {}};
+    moving.request.time_samples = 8;
+    EXPECT_THAT(moving.snapshot().notes,
+                UnorderedElementsAre("fog.vdb: grid \"vel\": 4096 non-finite voxels set to 0",
+                                     "odd.vdb: grid \"density\": 4096 voxels above 65504 clamped to it"));
 }
 
 TEST(VolumeMotion, OfTheNearestFrame) {
