@@ -121,7 +121,8 @@ GridProperty grid_property(const std::optional<GridSource>& source, size_t numbe
     CacheFolder* files = reading.snapshot.files.get();
     std::string content;
     if (files) content = "property " + content_hash(here.content + "\n" + next.content + "\n" + time.content());
-    const std::string what = named("medium", reading.medium);
+    constexpr std::string_view names[] = {"albedo", "emission", "temperature", "flame"};
+    const std::string what = moved_name(*reading.snapshot.scene, reading.medium, names[number]);
     return property_of(load_or_build<StoredProperty>(
                            files, "bricks", content,
                            [&] { return property_between(time, here.property, next.property, quantity, what); }),

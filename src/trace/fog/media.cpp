@@ -91,6 +91,7 @@ struct ReadContext {
     MissingFrame missing;
     CacheFolder* files;
     std::vector<std::string>& notes;
+    const Scene& scene;
 };
 
 // The fog in a frame's file, taken from `known` if it is there.
@@ -134,7 +135,7 @@ FogSource read_between(const MediumSource& source, const SequenceTime& time, con
         content = "file " + content_hash(content_of(here) + "\n" + content_of(next) + "\n" + time.content());
     const StoredFog fog = load_or_build<StoredFog>(reading.files, "bricks", content, [&] {
         return stored_fog(volume_at(time, {here.bricks, here.index_to_world}, {next.bricks, next.index_to_world},
-                                    named("medium", source.name)),
+                                    moved_name(reading.scene, source.name, "density")),
                           {});
     });
     return source_of(fog, key, content);
@@ -159,7 +160,7 @@ struct MovingFiles {
 
 FogSource fog_source(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
                      const FogSource& before, MovingFiles& files, Snapshot& snapshot) {
-    const ReadContext reading{missing, snapshot.files.get(), snapshot.notes};
+    const ReadContext reading{missing, snapshot.files.get(), snapshot.notes, scene};
     std::vector<FogSource> known{before};
     if (files.before) known.insert(known.end(), files.before->densities.begin(), files.before->densities.end());
     FogSource result;

@@ -82,6 +82,10 @@ SequenceTime sequence_time(const Scene& scene, const MediumSource& source, const
     return time;
 }
 
+std::string moved_name(const Scene& scene, const std::string& medium, std::string_view quantity) {
+    return scene.file.string() + ": " + named("medium", medium) + ": " + std::string(quantity);
+}
+
 SparseVolume volume_at(const SequenceTime& time, const PlacedBricks& here, const PlacedBricks& next,
                        const std::string& what) {
     if (time.moved == 0) return blended_fog(here, next, time.share, what);

@@ -43,6 +43,9 @@ bool moves(const MediumSource& source);
 SequenceTime sequence_time(const Scene& scene, const MediumSource& source, const Moment& moment, MissingFrame missing,
                            const FogFrames* before, Snapshot& snapshot);
 
+// How errors name a quantity that moves: scene file, medium, quantity.
+std::string moved_name(const Scene& scene, const std::string& medium, std::string_view quantity);
+
 // One quantity at that time, from its bricks at the frame and, where files are blended, at the next one.
 SparseVolume volume_at(const SequenceTime& time, const PlacedBricks& here, const PlacedBricks& next,
                        const std::string& what);

@@ -23,6 +23,7 @@
 namespace tyndall {
 namespace {
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 using ::testing::UnorderedElementsAre;
 
 constexpr float voxel = 1.0f / 32;
@@ -301,12 +302,16 @@ TEST(VolumeMotion, AClosedShutterReadsNoVelocity) {
     EXPECT_THAT(error_message(ExitCode::refused, [&] { moving.snapshot(); }), HasSubstr("has no grid \"nothing\""));
 }
 
-TEST(VolumeMotion, AbsurdSpeedsAreOneLine) {
+TEST(VolumeMotion, AbsurdSpeedsAreOneLineWithFileAndField) {
     Moving moving;
     write_cube(moving.scratch.file("fog.vdb"), vec3(0), {3e30f, 0, 0});
     moving.move();
     EXPECT_THAT(error_message(ExitCode::refused, [&] { moving.snapshot(); }),
-                HasSubstr("medium smoke: its velocity moves it"));
+                StartsWith(moving.scene.file.string() + ": medium smoke: density: its velocity moves it by up to"));
+    moving.fog().emission_grid = GridSource{moving.fog().sequence, {"density"}, {}};
+    moving.fog().extinction = 0.0f;
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { moving.snapshot(); }),
+                StartsWith(moving.scene.file.string() + ": medium smoke: emission: its velocity moves it by up to"));
 }
 }
 }
