@@ -115,10 +115,10 @@ void check_width(const ValueMap& map, const DecodedTree& tree, const std::string
 }
 
 SparseVolume read_fog(const std::filesystem::path& path, const std::string& wanted, const ValueMap& map, float most,
-                      VdbReadReport* report) {
+                      VdbReadReport* report, std::string_view quantity) {
     ByteCursor file(path);
     VdbDirectory directory = read_directory(file);
-    const VdbGridEntry& grid = choose_grid(directory, wanted, map.width, file);
+    const VdbGridEntry& grid = choose_grid(directory, wanted, map.width, file, quantity);
     VdbReadReport mended;
     VdbTreeCounts counts;
     mended.grid = grid.name;
@@ -136,7 +136,7 @@ ColorVolume read_color(const std::filesystem::path& path, std::span<const std::s
                        float most, VdbReadReport* report) {
     ByteCursor file(path);
     const VdbDirectory directory = read_directory(file);
-    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file);
+    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file, "color");
     const int channels = is_vector_float(*grids[0]) ? 3 : static_cast<int>(grids.size());
     ColorVolume color;
     VdbReadReport mended;
@@ -168,7 +168,7 @@ VelocityVolume read_velocity(const std::filesystem::path& path, std::span<const 
                              VdbReadReport* report) {
     ByteCursor file(path);
     const VdbDirectory directory = read_directory(file);
-    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file);
+    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file, "velocity");
     const bool vectors = is_vector_float(*grids[0]);
     if (!vectors && grids.size() == 1)
         refuse(label(file, *grids[0]), "has one number per voxel; velocity needs a vector grid or three scalar grids");
@@ -218,8 +218,8 @@ SparseVolume read_vdb(const std::filesystem::path& path, const std::string& want
 }
 
 SparseVolume read_vdb(const std::filesystem::path& path, const std::string& wanted, const ValueMap& map, float most,
-                      VdbReadReport* report) {
-    return within_memory(path, [&] { return read_fog(path, wanted, map, most, report); });
+                      VdbReadReport* report, std::string_view quantity) {
+    return within_memory(path, [&] { return read_fog(path, wanted, map, most, report, quantity); });
 }
 
 ColorVolume read_color_vdb(const std::filesystem::path& path, std::span<const std::string> grids, const ValueMap& map,
