@@ -140,6 +140,8 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
         vec3 up;
         Light light = light_at(scene, scene.lights[i], moment.seconds, up);
         add_filter(scene.lights[i], moment, up, missing, previous, light);
+        if (const auto& gobo = scene.lights[i].gobo; gobo && !gobo->still)
+            note_gap(gobo->sequence, moment.frame, MissingFrame::hold, snapshot.notes); // also with skip: gobo_file()
         if (has_area(scene.lights[i])) add_face(scene.lights[i], moment.seconds, up, light);
         if (!links.of_lights.empty()) light.casters = links.of_lights[i].x, light.lit = links.of_lights[i].y;
         light.core = core_share * snapshot.extent;

@@ -97,6 +97,7 @@ struct ReadContext {
 // The fog in a frame's file, taken from `known` if it is there.
 FogSource read(const MediumSource& source, int frame, const ReadContext& reading, std::span<const FogSource> known) {
     const auto file = sequence_file(source.sequence, frame, reading.missing);
+    note_gap(source.sequence, frame, reading.missing, reading.notes);
     if (!file) return {};
     const std::string key = file_key(*file) + source.density_grid + source.density_map.text();
     for (const FogSource& one : known)

@@ -9,6 +9,7 @@
 #include "volume/bricks/bricks.h"
 #include "volume/motion/moved_fog.h"
 
+#include <algorithm>
 #include <set>
 
 namespace tyndall {
@@ -23,6 +24,7 @@ double frames_after(const Scene& scene, const Moment& moment) {
 std::shared_ptr<const FileVelocity> velocity_of(const GridSource& source, int frame, MissingFrame missing,
                                                 const std::shared_ptr<const FileVelocity>& before, Snapshot& snapshot) {
     const auto file = sequence_file(source.sequence, frame, missing);
+    note_gap(source.sequence, frame, missing, snapshot.notes);
     if (!file) return nullptr;
     auto velocity = std::make_shared<FileVelocity>();
     const std::string grids = source.text();
@@ -50,6 +52,11 @@ std::string file_key(const std::filesystem::path& file) {
     const uint64_t size = check_readable(file);
     const auto changed = std::filesystem::last_write_time(file).time_since_epoch().count();
     return "file " + file.string() + " " + std::to_string(size) + " " + std::to_string(changed) + " ";
+}
+
+void note_gap(const FileSequence& sequence, int frame, MissingFrame missing, std::vector<std::string>& notes) {
+    std::string note = gap_note(sequence, frame, missing);
+    if (!note.empty() && !std::ranges::count(notes, note)) notes.push_back(std::move(note));
 }
 
 bool moves(const MediumSource& source) { return source.velocity || (source.blends && !source.sequence.files.empty()); }

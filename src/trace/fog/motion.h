@@ -50,6 +50,9 @@ std::string moved_name(const Scene& scene, const std::string& medium, std::strin
 SparseVolume volume_at(const SequenceTime& time, const PlacedBricks& here, const PlacedBricks& next,
                        const std::string& what);
 
+// Notes once which files of a sequence are missing at a frame.
+void note_gap(const FileSequence& sequence, int frame, MissingFrame missing, std::vector<std::string>& notes);
+
 // Key of a file: its path, size and modification time.
 std::string file_key(const std::filesystem::path& file);
 

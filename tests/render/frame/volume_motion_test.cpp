@@ -221,6 +221,20 @@ TEST(VolumeMotion, SaysWhatWasRepairedInItsFiles) {
                                      "odd.vdb: grid \"density\": 4096 voxels above 65504 clamped to it"));
 }
 
+TEST(VolumeMotion, SaysWhichFilesAreMissing) {
+    Moving moving;
+    for (const char* name : {"fog.0000.vdb", "fog.0002.vdb"})
+        write_cube(moving.scratch.file(name), vec3(0), {voxel, 0, 0});
+    moving.number({0, 2}), moving.move();
+    const std::string gap = "fog.0001.vdb is missing: ";
+    for (const auto& [missing, what] :
+         {std::pair{MissingFrame::hold, "fog.0000.vdb is shown instead"}, {MissingFrame::skip, "nothing is shown"}}) {
+        const Snapshot snapshot =
+            make_snapshot(moving.scene, moments_of(moving.scene, moving.request, 1), nullptr, missing);
+        EXPECT_THAT(snapshot.notes, UnorderedElementsAre(gap + what));
+    }
+}
+
 TEST(VolumeMotion, OfTheNearestFrame) {
     Moving moving;
     for (int frame = 0; frame <= 2; ++frame)
