@@ -49,6 +49,13 @@ bool is_hidden(const Scene& scene, const LightSource& light, double seconds) {
     return is_finite(vec3(matrix[3])) && glm::length(vec3(matrix[2])) == 0;
 }
 
+const char* scale_problem(vec3 scale) {
+    if (scale.x == 0 || scale.y == 0 || scale.z == 0) return "must not be 0: the fog would have no volume";
+    const float volume = std::abs(scale.x * scale.y * scale.z);
+    if (!(volume >= std::numeric_limits<float>::min())) return "is too small: the fog would have no volume";
+    return volume < infinity ? nullptr : "is too large";
+}
+
 mat4 medium_matrix(const MediumSource& medium, double seconds) {
     const mat4 turned = glm::translate(mat4(1), medium.translation.at(seconds)) *
                         glm::mat4_cast(glm::normalize(medium.rotation.at(seconds)));

@@ -243,6 +243,8 @@ bool is_hidden(const Scene& scene, const LightSource& light, double seconds);
 // Whether a node (-1 = none) or one of its ancestors is animated.
 bool is_moving(const Scene& scene, int node);
 
+// Why a medium cannot have this scale; null if it can.
+const char* scale_problem(vec3 scale);
 mat4 medium_matrix(const MediumSource& medium, double seconds); // from the medium's own space to the world
 
 // The first and the last frame whose files a medium uses while a frame's shutter is open.

@@ -157,6 +157,8 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
         vec3 up;
         Light light = light_at(scene, scene.lights[i], moment, up);
         add_filter(scene.lights[i], moment, up, missing, previous, light);
+        if (const auto& gobo = scene.lights[i].gobo; gobo && !gobo->still)
+            note_gap(gobo->sequence, moment.frame, MissingFrame::hold, snapshot.notes); // also with skip: gobo_file()
         if (has_area(scene.lights[i])) add_face(scene.lights[i], moment.seconds, up, light);
         if (!links.of_lights.empty()) light.casters = links.of_lights[i].x, light.lit = links.of_lights[i].y;
         light.core = core_share * snapshot.extent;
@@ -263,7 +265,11 @@ Snapshot make_snapshot(const Scene& scene, const FrameMoments& frame, const Snap
         const std::optional<double> grown = moments[0].grown;
         moments =
             with_growths(frame.moments, std::min(std::max(wanted, files_wanted(scene, all->front(), seconds)), most));
-        if (moments[0].grown != grown) all->front() = make_snapshot(scene, moments[0], &all->front(), missing, files);
+        if (moments[0].grown == grown) continue;
+        std::vector<std::string> notes = std::move(all->front().notes); // those of files that are now known
+        all->front() = make_snapshot(scene, moments[0], &all->front(), missing, files);
+        std::ranges::move(all->front().notes, std::back_inserter(notes));
+        all->front().notes = std::move(notes);
     }
     Moment middle_moment = frame.middle;
     middle_moment.grown = moments[moments.size() / 2].grown;

@@ -83,8 +83,9 @@ void say_summary(const RenderReport& report, const RenderRequest& request) {
     int kept = 0;
     for (const FrameReport& frame : report.frames) kept += frame.kept;
     const int rendered = static_cast<int>(report.frames.size()) - kept;
-    std::string line = count_text(rendered, "frame") + " rendered in " + seconds_text(report.seconds);
-    if (rendered > 1) line += " (" + seconds_text(report.seconds / rendered) + " per frame)";
+    const double seconds = report.loading + report.seconds;
+    std::string line = count_text(rendered, "frame") + " rendered in " + seconds_text(seconds);
+    if (rendered > 1) line += " (" + seconds_text(seconds / rendered) + " per frame)";
     if (kept > 0) line += formatted(", %d kept", kept);
     say(line + ", " + printable(request.output));
 }

@@ -92,23 +92,45 @@ FileSequence find_sequence(const std::string& pattern, const fs::path& base_dire
     return sequence;
 }
 
-std::optional<fs::path> sequence_file(const FileSequence& sequence, int frame, MissingFrame missing) {
-    if (sequence.files.empty()) return fs::path(sequence.pattern);
+namespace {
+// The files around a frame: its own, or the nearest earlier and later ones. The first and the last of a sequence exist.
+struct Neighbors {
+    int64_t wanted = 0;
+    int before = 0, after = 0;
+};
+
+std::optional<Neighbors> neighbors_of(const FileSequence& sequence, int frame) {
+    if (sequence.files.empty()) return {};
     const int64_t wanted = int64_t{frame} + sequence.offset;
     const auto mapped = mapped_frame(wanted, sequence.files.front(), sequence.files.back(), sequence.mode);
     if (!mapped) return {};
+    const auto after = std::ranges::upper_bound(sequence.files, *mapped), before = after - 1;
+    return Neighbors{*mapped, *before, *before == *mapped ? *before : *after};
+}
 
-    // The first and the last file exist, so the nearest earlier one does as well.
-    const auto after = std::ranges::upper_bound(sequence.files, *mapped);
-    const int nearest = *(after - 1);
-    const auto name = [&](int64_t f) {
-        const fs::path path(sequence.pattern);
-        return path.parent_path() / frame_name(path.filename().string(), static_cast<int>(f));
-    };
-    if (nearest == *mapped || missing == MissingFrame::hold) return name(nearest);
+fs::path file_of(const FileSequence& sequence, int64_t frame) {
+    const fs::path path(sequence.pattern);
+    return path.parent_path() / frame_name(path.filename().string(), static_cast<int>(frame));
+}
+}
+
+std::optional<fs::path> sequence_file(const FileSequence& sequence, int frame, MissingFrame missing) {
+    if (sequence.files.empty()) return fs::path(sequence.pattern);
+    const auto near = neighbors_of(sequence, frame);
+    if (!near) return {};
+    if (near->before == near->wanted || missing == MissingFrame::hold) return file_of(sequence, near->before);
     if (missing == MissingFrame::skip) return {};
-    fail(ExitCode::unreadable, name(*mapped).string(),
+    fail(ExitCode::unreadable, file_of(sequence, near->wanted).string(),
          "is missing from a sequence of frames " + std::to_string(sequence.files.front()) + " to " +
              std::to_string(sequence.files.back()) + "; --missing hold or skip continues without it");
+}
+
+std::string gap_note(const FileSequence& sequence, int frame, MissingFrame missing) {
+    const auto near = neighbors_of(sequence, frame);
+    if (!near || near->before == near->wanted) return {};
+    const auto name = [&](int64_t number) { return file_of(sequence, number).filename().string(); };
+    const int64_t first = int64_t{near->before} + 1, last = int64_t{near->after} - 1;
+    return name(first) + (first == last ? " is" : " to " + name(last) + " are") + " missing: " +
+           (missing == MissingFrame::hold ? name(near->before) + " is shown instead" : "nothing is shown");
 }
 }

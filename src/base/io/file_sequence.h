@@ -23,4 +23,8 @@ FileSequence find_sequence(const std::string& pattern, const std::filesystem::pa
 // The file for a scene frame; nothing if the frame has none (clip, skip). Throws Error (unreadable) at a gap with
 // MissingFrame::error.
 std::optional<std::filesystem::path> sequence_file(const FileSequence& sequence, int frame, MissingFrame missing);
+
+// Names the missing files at a frame and what is shown instead of them; empty if none is missing. The same for all
+// frames of a gap.
+std::string gap_note(const FileSequence& sequence, int frame, MissingFrame missing);
 }

@@ -75,9 +75,11 @@ std::vector<std::pair<std::string, std::string>> grid_rows(const VdbGridInfo& gr
                                               static_cast<double>(grid.background)));
     else
         rows.emplace_back("values", ranges_text(grid.ranges));
-    if (grid.role != GridRole::velocity && (grid.non_finite || grid.negative))
-        rows.emplace_back("faults", std::to_string(grid.non_finite) + " not finite, " + std::to_string(grid.negative) +
-                                        " negative: read as 0");
+    const uint64_t negative = grid.role == GridRole::velocity ? 0 : grid.negative;
+    if (grid.non_finite || negative)
+        rows.emplace_back("faults", std::to_string(grid.non_finite) + " not finite" +
+                                        (negative ? ", " + std::to_string(negative) + " negative" : "") +
+                                        ": read as 0");
     return rows;
 }
 }

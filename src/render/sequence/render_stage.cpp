@@ -140,6 +140,6 @@ void render(Pipeline& pipeline, FrameJob& work) {
         fail_in_frame(work.report.frame, error);
     }
     ++pipeline.settled, ++pipeline.rendered;
-    work.report.seconds = steady_seconds() - start;
+    work.report.seconds += steady_seconds() - start;
 }
 }

@@ -46,8 +46,9 @@ void report_frame(Pipeline& pipeline, const FrameJob& work) {
 }
 
 namespace {
-// The error, its parts and the target, as text.
-std::string error_text(const FrameStats& stats, const RenderRequest& request) {
+// The error, its parts, the target and the budget, as text.
+std::string error_text(const FrameReport& report, const RenderRequest& request) {
+    const FrameStats& stats = report.stats;
     if (!stats.noise) return {};
     std::string text = stats.is_noise_alone() ? ", noise " : ", error ";
     text += formatted("%.3g, at most %.3g", stats.error()->error, stats.error()->bound);
@@ -59,7 +60,7 @@ std::string error_text(const FrameStats& stats, const RenderRequest& request) {
     if (stats.moments_error) text += formatted(", moments %.3g", stats.moments_error->error);
     text += formatted(stats.samples == 1 ? ", %d sample per pixel" : ", %d samples per pixel", stats.samples);
     if (request.time_budget > 0)
-        text += formatted(", %.3g s of a budget of %.3g s", stats.goal_seconds, request.time_budget);
+        text += formatted(", %.3g s of a budget of %.3g s", report.seconds, request.time_budget);
     return text;
 }
 
@@ -84,7 +85,7 @@ void write(Pipeline& pipeline, FrameJob& work) {
     report.write_seconds = steady_seconds() - start;
     report_frame(pipeline, work);
 
-    std::string text = formatted("%.2f s -> ", report.seconds) + report.file + error_text(report.stats, request);
+    std::string text = formatted("%.2f s -> ", report.seconds) + report.file + error_text(report, request);
     if (report.stats.moments > 1) text += formatted(", motion blur of %d moments", report.stats.moments);
     if (report.stats.non_finite) text += " (" + std::to_string(report.stats.non_finite) + " non-finite samples)";
     say(pipeline, work, text);
@@ -101,11 +102,21 @@ template<class Body> std::exception_ptr caught(const Body& body) {
 }
 
 void run(Pipeline& pipeline) {
+    const RenderRequest& request = pipeline.request;
     std::optional<FrameJob> current = load_next(pipeline, nullptr), rendered;
+    if (current) // a budget includes all that was done since the program's start
+        current->report.seconds =
+            request.time_budget > 0 ? steady_seconds() - request.started : current->report.load_seconds;
     while (current) {
         std::optional<FrameJob> next;
         std::exception_ptr render_error, write_error, load_error;
-        parallel_invoke({[&] { render_error = caught([&] { render(pipeline, *current); }); },
+        const double start = steady_seconds();
+        double end = start;
+        parallel_invoke({[&] {
+                             current->report.seconds += steady_seconds() - start;
+                             render_error = caught([&] { render(pipeline, *current); });
+                             end = steady_seconds();
+                         },
                          [&] { load_error = caught([&] { next = load_next(pipeline, &current->snapshot); }); },
                          [&] {
                              if (rendered) write_error = caught([&] { write(pipeline, *rendered); });
@@ -118,6 +129,7 @@ void run(Pipeline& pipeline) {
         current->snapshot = {};
         rendered = std::move(current);
         current = std::move(next);
+        if (current) current->report.seconds = steady_seconds() - end;
         if (load_error) {
             write(pipeline, *rendered);
             std::rethrow_exception(load_error);
@@ -156,6 +168,7 @@ RenderReport render_sequence(const Scene& scene, const RenderRequest& request, c
         plan.exposure = automatic_exposure(scene, request, orders_of(*asked.mode, request.settings),
                                            first ? &first->snapshot : nullptr);
 
+    const double loading = first ? first->seconds : 0;
     std::vector<std::string> lights;
     for (const LightSource& light : scene.lights) lights.push_back(light.name);
     Pipeline pipeline{scene,
@@ -176,7 +189,7 @@ RenderReport render_sequence(const Scene& scene, const RenderRequest& request, c
             request.target_error > 0 && frame.stats.noise && frame.stats.error()->bound > request.target_error;
     report.late = seconds_late(request, report);
     report.cancelled = cancel && report.frames.size() < request.frames.size();
-    report.seconds = steady_seconds() - start;
+    report.seconds = steady_seconds() - start, report.loading = loading;
     report.peak_memory_bytes = peak_memory();
     return std::move(report);
 }

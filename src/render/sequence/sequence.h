@@ -28,7 +28,8 @@ struct FrameReport {
     std::string file;
     std::string mode{}; // that rendered it, if not the sequence's
     bool kept = false;  // by resume; nothing was rendered, noise and samples are those of the file
-    double load_seconds = 0, seconds = 0, write_seconds = 0;
+    double load_seconds = 0, write_seconds = 0;
+    double seconds = 0; // since the frame before was rendered: waiting for this one's fog and surfaces, and rendering
     std::optional<double> exposure{}; // stops, of its PNG
     FrameStats stats;
 };
@@ -41,6 +42,7 @@ struct RenderReport {
     double late = 0;        // seconds over the time budgets of all frames
     bool cancelled = false; // stopped early: the frames above are complete, no file is partial
     double seconds = 0;
+    double loading = 0; // seconds taken before to load the first frame
     uint64_t non_finite = 0, peak_memory_bytes = 0;
 };
 

@@ -24,7 +24,7 @@ void read_transform(const Field& field, dvec3 origin, MediumSource& medium) {
     if (!scale) return;
     medium.scale = keyed_color(scale); // one number or three, like a color
     for (const vec3 value : medium.scale.values)
-        if (value.x * value.y * value.z == 0) refuse(scale, "must not be 0: the fog would have no volume");
+        if (const char* why = scale_problem(value)) refuse(scale, why);
 }
 
 // `origin` is the scene's origin for a medium without a transform, whose own space is then relative to it.

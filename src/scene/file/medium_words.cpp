@@ -3,7 +3,9 @@
 #include "base/error.h"
 #include "base/json/json.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "scene/file/scene_words.h"
+#include "volume/bricks/half.h"
 
 #include <algorithm>
 #include <utility>
@@ -13,10 +15,17 @@ namespace {
 constexpr float hottest = 2000;  // kelvin, for the maximum of a grid that is not in kelvin: the yellow of a wood fire
 constexpr float in_kelvin = 500; // grids with larger values are taken to be in kelvin
 
+// Whether a scene file can name the grid.
+bool can_be_named(const VdbGridInfo& grid) {
+    std::string_view rest = grid.key;
+    while (const size_t length = utf8_length(rest)) rest.remove_prefix(length);
+    return rest.empty();
+}
+
 // The first non-empty grid of a role with values above 0.
 const VdbGridInfo* grid_like(const VdbInfo& info, GridRole role) {
     const auto found = std::ranges::find_if(info.grids, [&](const VdbGridInfo& grid) {
-        return grid.role == role && grid.active_voxels > 0 && grid.maximum > 0;
+        return grid.role == role && grid.active_voxels > 0 && grid.maximum > 0 && can_be_named(grid);
     });
     return found == info.grids.end() ? nullptr : &*found;
 }
@@ -56,7 +65,9 @@ const VdbGridInfo* density_of(const VdbInfo& info) {
 float default_extinction(const VdbGridInfo& fog) {
     const Box voxels{vec3(fog.active_low) - 0.5f, vec3(fog.active_high) + 0.5f};
     const float diagonal = std::max(glm::length(transform(mat4(fog.index_to_world), voxels).size()), 1e-3f);
-    return 4 / (diagonal * (fog.role == GridRole::level_set ? 1.0f : fog.maximum));
+    // Bricks hold densities up to the largest half.
+    const float highest = fog.role == GridRole::level_set ? 1.0f : std::min(fog.maximum, largest_half);
+    return 4 / (diagonal * highest);
 }
 
 std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {
@@ -66,10 +77,11 @@ std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {
     const VdbGridInfo* emission = temperature ? nullptr : grid_like(info, GridRole::emission);
     if (!density && !temperature && !emission) return {};
     const bool dims = density && density->maximum > 0;
-    const auto velocity = std::ranges::find_if(
-        info.grids, [](const VdbGridInfo& grid) { return grid.role == GridRole::velocity && grid.active_voxels > 0; });
+    const auto velocity = std::ranges::find_if(info.grids, [](const VdbGridInfo& grid) {
+        return grid.role == GridRole::velocity && grid.active_voxels > 0 && can_be_named(grid);
+    });
     std::vector<std::string> grids;
-    if (dims) grids.push_back(member("density", density_text(*density)));
+    if (dims && can_be_named(*density)) grids.push_back(member("density", density_text(*density)));
     if (dims && color) grids.push_back(member("albedo", color_name(*color)));
     if (temperature) grids.push_back(member("temperature", temperature_text(*temperature)));
     if (flame) grids.push_back(member("flame", quote_json(flame->key)));

@@ -33,6 +33,8 @@ std::string volume_scene_text(const std::filesystem::path& vdb) {
     const VdbGridInfo* fog = nullptr;
     for (const VdbGridInfo& grid : info.grids)
         if (grid.is_fog) fog = &grid;
+    if (!fog && info.grids.size() == 1)
+        refuse(vdb.string(), "grid \"" + printable(info.grids[0].name, 80) + "\" " + info.grids[0].why_not);
     if (!fog) refuse(vdb.string(), "cannot tell which grid is the density; name one as \"grid\" in a scene file");
 
     // The default camera and lights for a box of the volume's bounds.

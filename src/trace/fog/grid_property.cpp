@@ -34,11 +34,15 @@ void add_pool(const SparseVolume& volume, StoredProperty& property) {
     property.pools.push_back(*make_bricks(volume)), property.places.push_back(volume.index_to_world);
 }
 
-StoredProperty read_file(const std::filesystem::path& file, const GridSource& source, Quantity quantity) {
+constexpr std::string_view property_names[] = {"albedo", "emission", "temperature", "flame"};
+
+StoredProperty read_file(const std::filesystem::path& file, const GridSource& source, size_t number,
+                         Quantity quantity) {
     StoredProperty property;
     VdbReadReport report;
     if (quantity == Quantity::number) {
-        const SparseVolume numbers = read_vdb(file, source.grids[0], source.map, largest_half, &report);
+        const SparseVolume numbers =
+            read_vdb(file, source.grids[0], source.map, largest_half, &report, property_names[number]);
         within(file.string(), [&] { add_pool(numbers, property); });
     } else {
         const float most = quantity == Quantity::share ? 1 : largest_half;
@@ -69,9 +73,10 @@ struct FileProperty {
     std::string content;
 };
 
-FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, const ReadContext& reading,
-                        std::span<const GridProperty> known) {
+FileProperty read_frame(const GridSource& source, size_t number, Quantity quantity, int frame,
+                        const ReadContext& reading, std::span<const GridProperty> known) {
     const auto file = sequence_file(source.sequence, frame, reading.missing);
+    note_gap(source.sequence, frame, reading.missing, reading.snapshot.notes);
     if (!file) return {};
     const std::string key = file_key(*file) + source.text();
     CacheFolder* files = reading.snapshot.files.get();
@@ -79,8 +84,8 @@ FileProperty read_frame(const GridSource& source, Quantity quantity, int frame, 
         files ? "property " + file_hash(*file, *files->inputs) + " " + source.text() : std::string();
     for (const GridProperty& one : known)
         if (one.key == key) return {one, content};
-    StoredProperty stored =
-        load_or_build<StoredProperty>(files, "bricks", content, [&] { return read_file(*file, source, quantity); });
+    StoredProperty stored = load_or_build<StoredProperty>(files, "bricks", content,
+                                                          [&] { return read_file(*file, source, number, quantity); });
     if (!stored.note.empty()) reading.snapshot.notes.push_back(file->filename().string() + ": " + stored.note);
     return {property_of(std::move(stored), key, quantity), content};
 }
@@ -106,10 +111,10 @@ GridProperty grid_property(const std::optional<GridSource>& source, size_t numbe
     if (before) known.push_back(*before);
     if (frames_before)
         known.insert(known.end(), frames_before->properties[number].begin(), frames_before->properties[number].end());
-    if (!time.between()) return read_frame(*source, quantity, time.frame, reading, known).property;
+    if (!time.between()) return read_frame(*source, number, quantity, time.frame, reading, known).property;
 
     const auto of_frame = [&](int frame) {
-        FileProperty read = read_frame(*source, quantity, frame, reading, known);
+        FileProperty read = read_frame(*source, number, quantity, frame, reading, known);
         if (read.property) reading.frames.properties[number].push_back(read.property);
         return read;
     };
@@ -121,7 +126,7 @@ GridProperty grid_property(const std::optional<GridSource>& source, size_t numbe
     CacheFolder* files = reading.snapshot.files.get();
     std::string content;
     if (files) content = "property " + content_hash(here.content + "\n" + next.content + "\n" + time.content());
-    const std::string what = named("medium", reading.medium);
+    const std::string what = moved_name(*reading.snapshot.scene, reading.medium, property_names[number]);
     return property_of(load_or_build<StoredProperty>(
                            files, "bricks", content,
                            [&] { return property_between(time, here.property, next.property, quantity, what); }),

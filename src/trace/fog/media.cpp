@@ -93,11 +93,13 @@ struct ReadContext {
     MissingFrame missing;
     CacheFolder* files;
     std::vector<std::string>& notes;
+    const Scene& scene;
 };
 
 // The fog in a frame's file, taken from `known` if it is there.
 FogSource read(const MediumSource& source, int frame, const ReadContext& reading, std::span<const FogSource> known) {
     const auto file = sequence_file(source.sequence, frame, reading.missing);
+    note_gap(source.sequence, frame, reading.missing, reading.notes);
     if (!file) return {};
     const std::string key = file_key(*file) + source.density_grid + source.density_map.text();
     for (const FogSource& one : known)
@@ -136,7 +138,7 @@ FogSource read_between(const MediumSource& source, const SequenceTime& time, con
         content = "file " + content_hash(content_of(here) + "\n" + content_of(next) + "\n" + time.content());
     const StoredFog fog = load_or_build<StoredFog>(reading.files, "bricks", content, [&] {
         return stored_fog(volume_at(time, {here.bricks, here.index_to_world}, {next.bricks, next.index_to_world},
-                                    named("medium", source.name)),
+                                    moved_name(reading.scene, source.name, "density")),
                           {});
     });
     return source_of(fog, key, content);
@@ -161,7 +163,7 @@ struct MovingFiles {
 
 FogSource fog_source(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
                      const FogSource& before, MovingFiles& files, Snapshot& snapshot) {
-    const ReadContext reading{missing, snapshot.files.get(), snapshot.notes};
+    const ReadContext reading{missing, snapshot.files.get(), snapshot.notes, scene};
     std::vector<FogSource> known{before};
     if (files.before) known.insert(known.end(), files.before->densities.begin(), files.before->densities.end());
     FogSource result;
@@ -232,7 +234,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
     files.before = before.grids ? before.grids->frames.get() : nullptr;
     files.time = sequence_time(scene, source, moment, missing, files.before, snapshot);
     files.now.velocity = files.time.velocity || !files.before ? files.time.velocity : files.before->velocity;
-    files.now.moved = files.time.moved;
+    files.now.frame = files.time.frame, files.now.moved = files.time.moved;
     const bool fog_is_there = (dims || max_component(medium.optics.emission.radiance) > 0) &&
                               find_fog(scene, source, moment, missing, before, files, snapshot, medium);
     fog.grids = nullptr;

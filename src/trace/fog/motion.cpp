@@ -9,6 +9,7 @@
 #include "volume/bricks/bricks.h"
 #include "volume/motion/moved_fog.h"
 
+#include <algorithm>
 #include <set>
 
 namespace tyndall {
@@ -23,6 +24,7 @@ double frames_after(const Scene& scene, const Moment& moment) {
 std::shared_ptr<const FileVelocity> velocity_of(const GridSource& source, int frame, MissingFrame missing,
                                                 const std::shared_ptr<const FileVelocity>& before, Snapshot& snapshot) {
     const auto file = sequence_file(source.sequence, frame, missing);
+    note_gap(source.sequence, frame, missing, snapshot.notes);
     if (!file) return nullptr;
     auto velocity = std::make_shared<FileVelocity>();
     const std::string grids = source.text();
@@ -52,6 +54,11 @@ std::string file_key(const std::filesystem::path& file) {
     return "file " + file.string() + " " + std::to_string(size) + " " + std::to_string(changed) + " ";
 }
 
+void note_gap(const FileSequence& sequence, int frame, MissingFrame missing, std::vector<std::string>& notes) {
+    std::string note = gap_note(sequence, frame, missing);
+    if (!note.empty() && !std::ranges::count(notes, note)) notes.push_back(std::move(note));
+}
+
 bool moves(const MediumSource& source) { return source.velocity || (source.blends && !source.sequence.files.empty()); }
 
 namespace {
@@ -65,8 +72,9 @@ SequenceTime sequence_time(const Scene& scene, const MediumSource& source, const
                            const FogFrames* before, Snapshot& snapshot) {
     SequenceTime time;
     time.frame = moment.frame;
+    // The first moment tells how often to move the fog, even if it is the frame's own.
     const double after = moves(source) ? frames_after(scene, moment) : 0;
-    if (after == 0) return time;
+    if (after == 0 && !(source.velocity && moment.grown)) return time;
     if (source.blends) {
         const double whole = std::floor(after);
         time.frame += static_cast<int>(whole), time.share = static_cast<float>(after - whole);
@@ -74,27 +82,42 @@ SequenceTime sequence_time(const Scene& scene, const MediumSource& source, const
     }
     time.frame = nearest_frame(source, moment.frame, after, missing);
     const double frames = after - (time.frame - moment.frame), scale = double{source.velocity->scale};
-    time.moved = scale * (source.velocity->per_frame ? frames : frames / scene.frame_rate);
-    const auto velocity =
+    time.velocity =
         velocity_of(source.velocity->grid, time.frame, missing, before ? before->velocity : nullptr, snapshot);
-    if (velocity && velocity->field.fastest > 0 && time.moved != 0) time.velocity = velocity;
+    if (time.velocity && time.velocity->field.fastest > 0)
+        time.moved = scale * (source.velocity->per_frame ? frames : frames / scene.frame_rate);
     return time;
+}
+
+std::string moved_name(const Scene& scene, const std::string& medium, std::string_view quantity) {
+    return scene.file.string() + ": " + named("medium", medium) + ": " + std::string(quantity);
 }
 
 SparseVolume volume_at(const SequenceTime& time, const PlacedBricks& here, const PlacedBricks& next,
                        const std::string& what) {
-    if (!time.velocity) return blended_fog(here, next, time.share, what);
+    if (time.moved == 0) return blended_fog(here, next, time.share, what);
     return here.bricks ? moved_fog(here, time.velocity->field, time.moved, what) : SparseVolume();
 }
 
 namespace {
+// Smallest side of the voxels of all that moves; infinity if nothing does.
+double smallest_voxel(const FogSource& fog) {
+    double smallest = infinity;
+    const auto add = [&](const std::shared_ptr<const BrickPool>& bricks, const dmat4& index_to_world) {
+        if (!bricks || !(bricks->highest > 0)) return;
+        for (int axis = 0; axis < 3; ++axis) smallest = std::min(smallest, glm::length(dvec3(index_to_world[axis])));
+    };
+    add(fog.bricks, fog.index_to_world);
+    if (const MediumGrids* grids = fog.grids.get())
+        for (const GridProperty* property : {&grids->albedo, &grids->emission, &grids->temperature, &grids->flame})
+            for (const PlacedBricks& channel : property->channels) add(channel.bricks, channel.index_to_world);
+    return smallest;
+}
+
 // The largest distance, in voxels, that velocities move fog in their unit of time.
 double voxels_per_time(const FogSource& fog) {
     const FogFrames* frames = fog.grids ? fog.grids->frames.get() : nullptr;
-    if (!frames || !frames->velocity || !fog.bricks) return 0;
-    double voxel = infinity;
-    for (int axis = 0; axis < 3; ++axis) voxel = std::min(voxel, glm::length(dvec3(fog.index_to_world[axis])));
-    return double{frames->velocity->field.fastest} / voxel;
+    return frames && frames->velocity ? double{frames->velocity->field.fastest} / smallest_voxel(fog) : 0;
 }
 }
 
@@ -106,12 +129,14 @@ double voxels_per_second(const Scene& scene, const MediumSource& source, const F
 
 FogTravel fog_travel(const Snapshot& snapshot, size_t medium) {
     FogTravel travel;
-    std::set<const BrickPool*> places;
+    std::set<std::pair<int, double>> places;
     for (const Snapshot& moment : *snapshot.moments) {
         const FogSource& fog = moment.fog_sources[medium];
         const double speed = voxels_per_time(fog);
-        if (speed > 0) travel.voxels = std::max(travel.voxels, speed * std::abs(fog.grids->frames->moved));
-        places.insert(fog.bricks.get());
+        if (speed == 0) continue;
+        const FogFrames& frames = *fog.grids->frames;
+        travel.voxels = std::max(travel.voxels, speed * std::abs(frames.moved));
+        places.insert({frames.frame, frames.moved});
     }
     travel.places = static_cast<int>(places.size());
     return travel;

@@ -19,10 +19,10 @@ struct FileVelocity {
 struct SequenceTime {
     int frame = 0;
     float share = 0;
-    double moved = 0; // seconds or frames to move by, times the medium's velocity scale
+    double moved = 0; // seconds or frames to move by, times the medium's velocity scale; 0 where nothing moves
     std::shared_ptr<const FileVelocity> velocity;
 
-    bool between() const { return share > 0 || velocity; }
+    bool between() const { return share > 0 || moved != 0; }
     std::string key() const, content() const; // as FogSource::key and BrickPool::content
 };
 
@@ -31,6 +31,7 @@ struct FogFrames {
     std::vector<FogSource> densities;
     std::array<std::vector<GridProperty>, 4> properties; // albedo, emission, temperature, flame
     std::shared_ptr<const FileVelocity> velocity;
+    int frame = 0;    // as in SequenceTime
     double moved = 0; // as in SequenceTime
 };
 
@@ -42,9 +43,15 @@ bool moves(const MediumSource& source);
 SequenceTime sequence_time(const Scene& scene, const MediumSource& source, const Moment& moment, MissingFrame missing,
                            const FogFrames* before, Snapshot& snapshot);
 
+// How errors name a quantity that moves: scene file, medium, quantity.
+std::string moved_name(const Scene& scene, const std::string& medium, std::string_view quantity);
+
 // One quantity at that time, from its bricks at the frame and, where files are blended, at the next one.
 SparseVolume volume_at(const SequenceTime& time, const PlacedBricks& here, const PlacedBricks& next,
                        const std::string& what);
+
+// Notes once which files of a sequence are missing at a frame.
+void note_gap(const FileSequence& sequence, int frame, MissingFrame missing, std::vector<std::string>& notes);
 
 // Key of a file: its path, size and modification time.
 std::string file_key(const std::filesystem::path& file);

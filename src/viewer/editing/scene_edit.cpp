@@ -71,7 +71,7 @@ void check(const LightSource& light, const std::string& place) {
 
 void check(const MediumSource& medium, const std::string& place) {
     for (const vec3 scale : medium.scale.values)
-        if (scale.x * scale.y * scale.z == 0) refuse(place, "must not be 0: the fog would have no volume");
+        if (const char* why = scale_problem(scale)) refuse(place, why);
     if (!glm::all(glm::lessThan(medium.bounds.low, medium.bounds.high)))
         refuse(place, "the lower corner of the bounds must be less than the upper one");
     for (const float g : medium.g.values)

@@ -52,6 +52,9 @@ template<class Visit> void fields(BrickPool& pool, Visit& visit) {
     visit(pool.mass), visit(pool.mean), visit(pool.mean_in_bricks), visit(pool.voxel_size);
 }
 
+// Why the index of the volume's bricks is too large; empty if it is not.
+std::string bricks_problem(const SparseVolume& volume);
+
 // Throws as make_bricks() does if the index alone is too large.
 void check_bricks(const SparseVolume& volume);
 

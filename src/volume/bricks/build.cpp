@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/process.h"
+#include "base/text.h"
 #include "volume/bricks/brick_sources.h"
 #include "volume/bricks/half.h"
 
@@ -26,23 +27,46 @@ struct BrickArrays {
     std::vector<float> constants, minimum, maximum;
 };
 
-// Sizes the brick grid with one layer of zeros before the first voxel and one after the last.
-void size_pool(const std::string& name, const VoxelBox& box, BrickPool& pool) {
+// Voxels in leaves and tiles.
+double voxels_stored(const SparseVolume& volume) {
+    double voxels = 512.0 * static_cast<double>(volume.leaves.size());
+    for (const Tile& tile : volume.tiles) {
+        const dvec3 size(tile.high - tile.low + 1);
+        voxels += size.x * size.y * size.z;
+    }
+    return voxels;
+}
+
+// Bricks along an axis, with one layer of zeros before the first voxel and one after the last.
+int64_t bricks_along(const VoxelBox& box, int axis) {
+    return ((int64_t{box.high[axis]} + 1) >> 3) - ((int64_t{box.low[axis]} - 1) >> 3) + 1;
+}
+
+// Why the index of a box is too large; empty if it is not. Only a nearly empty box suggests stray voxels.
+std::string span_problem(const VoxelBox& box, const SparseVolume& volume) {
+    constexpr double nearly_empty = 0.01;
     int64_t cells = 1;
+    bool fits = true;
+    for (int axis = 0; axis < 3 && fits; ++axis)
+        fits = bricks_along(box, axis) <= longest_axis &&
+               (cells *= bricks_along(box, axis)) * int64_t{sizeof(int32_t)} <= largest_index;
+    if (fits) return {};
+    const dvec3 size = dvec3(box.high) - dvec3(box.low) + 1.0;
+    const bool is_stray = voxels_stored(volume) < nearly_empty * size.x * size.y * size.z;
+    return formatted("spans %.0fx%.0fx%.0f voxels, too many to store: ", size.x, size.y, size.z) +
+           (is_stray ? "a few stray voxels far away are enough; remove them, or use larger voxels"
+                     : "use larger voxels");
+}
+
+void size_pool(const SparseVolume& volume, const VoxelBox& box, BrickPool& pool) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (int64_t{box.low[axis]} < -farthest_voxel || box.high[axis] > farthest_voxel)
+            refuse(volume.name, "voxel coordinates go beyond 2^30; move the grid by its transform instead");
+    if (const std::string why = span_problem(box, volume); !why.empty())
+        fail(ExitCode::out_of_memory, volume.name, "fog " + why);
     for (int axis = 0; axis < 3; ++axis) {
-        const int64_t low = box.low[axis], high = box.high[axis];
-        if (low < -farthest_voxel || high > farthest_voxel)
-            refuse(name, "voxel coordinates go beyond 2^30; move the grid by its transform instead");
-        const int64_t first = (low - 1) >> 3, count = ((high + 1) >> 3) - first + 1;
-        pool.low[axis] = static_cast<int>(first * 8);
-        pool.size[axis] = static_cast<int>(count);
-        if (count > longest_axis || (cells *= count) * int64_t{sizeof(int32_t)} > largest_index)
-            fail(ExitCode::out_of_memory, name,
-                 "fog spans " + std::to_string(int64_t{box.high.x} - box.low.x + 1) + "x" +
-                     std::to_string(int64_t{box.high.y} - box.low.y + 1) + "x" +
-                     std::to_string(int64_t{box.high.z} - box.low.z + 1) +
-                     " voxels, too many to store: a few stray voxels far away are enough; remove them, or use larger "
-                     "voxels");
+        pool.low[axis] = static_cast<int>(((int64_t{box.low[axis]} - 1) >> 3) * 8);
+        pool.size[axis] = static_cast<int>(bricks_along(box, axis));
     }
     pool.local_bounds = {vec3(box.low - pool.low - 1), vec3(box.high - pool.low + 1)};
 }
@@ -174,14 +198,19 @@ void finish_index(const std::vector<HalfRange>& packed, BrickArrays arrays, Bric
 void check_bricks(const SparseVolume& volume) {
     BrickPool pool;
     const Sources sources = make_sources(volume);
-    if (!sources.box.empty()) size_pool(volume.name, sources.box, pool);
+    if (!sources.box.empty()) size_pool(volume, sources.box, pool);
+}
+
+std::string bricks_problem(const SparseVolume& volume) {
+    const Sources sources = make_sources(volume);
+    return sources.box.empty() ? std::string() : span_problem(sources.box, volume);
 }
 
 std::shared_ptr<const BrickPool> make_bricks(const SparseVolume& volume) {
     auto pool = std::make_shared<BrickPool>();
     Sources sources = make_sources(volume);
     if (!sources.box.empty()) {
-        size_pool(volume.name, sources.box, *pool);
+        size_pool(volume, sources.box, *pool);
         pool->mass = sources.mass;
         fill_cells(*pool, volume, sources);
         BrickArrays arrays;

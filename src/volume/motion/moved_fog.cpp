@@ -128,6 +128,7 @@ void set_box(SparseVolume& volume, const CellGrid& grid) {
 SparseVolume moved_fog(const PlacedBricks& fog, const VelocityField& field, double time, const std::string& what) {
     SparseVolume volume;
     volume.name = what, volume.index_to_world = fog.index_to_world;
+    if (!(fog.bricks->highest > 0)) return volume;
     const vec3 sizes = fog.bricks->voxel_size;
     const double voxels = std::abs(time) * double{field.fastest} / double{std::min({sizes.x, sizes.y, sizes.z})};
     if (!(voxels <= max_voxels))

@@ -32,10 +32,11 @@ std::string label(const ByteCursor& file, const VdbGridEntry& grid) {
     return file.where + ": grid \"" + printable(grid.name, 80) + "\"";
 }
 
-std::string grid_problem(const VdbGridEntry& grid, float width) {
+std::string grid_problem(const VdbGridEntry& grid, float width, std::string_view quantity) {
     if (!is_scalar_float(grid) && (grid.type == "float" || grid.type == "double"))
         return "has the tree shape " + printable(grid.tree_shape, 40) + "; only 5_4_3 is supported";
-    if (!is_scalar_float(grid)) return "holds " + printable(grid.type, 40) + " values, not a density per voxel";
+    if (!is_scalar_float(grid))
+        return "holds " + printable(grid.type, 40) + " values, not a " + std::string(quantity) + " per voxel";
     if (grid.grid_class == "level set" && width == 0)
         return "is a level set; for fog, set a \"width\" in \"grids\": {\"density\": {...}}, no wider than its "
                "narrow band, or convert it (vdb_tool -read in.vdb -ls2fog -write fog.vdb)";
@@ -64,9 +65,11 @@ const VdbGridEntry* default_grid(const VdbDirectory& directory) {
 }
 
 namespace {
-std::string listing(const VdbDirectory& directory) {
+// The grids of the file with their types; `of_fog`: only those that can be used as fog.
+std::string listing(const VdbDirectory& directory, bool of_fog = false) {
     std::vector<std::string> names;
     for (const VdbGridEntry& grid : directory.grids) {
+        if (of_fog && !grid_problem(grid).empty()) continue;
         const bool level_set = grid.grid_class == "level set";
         names.push_back(printable(key_of(directory, grid), 40) + " (" + printable(grid.type, 24) +
                         (level_set ? ", level set)" : ")"));
@@ -80,7 +83,7 @@ std::string listing(const VdbDirectory& directory) {
     const bool any = std::ranges::any_of(directory.grids, [](const auto& grid) { return grid_problem(grid).empty(); });
     const VdbGridEntry& first = named.empty() ? directory.grids.front() : *named.front();
     if (any && one) refuse(label(file, first), "is not named as a density; to use it as fog, set \"grid\" to its name");
-    const std::string others = "; set \"grid\" to one of " + listing(directory);
+    const std::string others = "; set \"grid\" to one of " + listing(directory, true);
     if (one || !named.empty()) refuse(label(file, first), grid_problem(first) + (any ? others : ""));
     refuse(file.where, any ? "cannot tell which grid is the density" + others
                            : "none of its grids can be used as fog: " + listing(directory));
@@ -94,7 +97,7 @@ const VdbGridEntry& existing_grid(const VdbDirectory& directory, const std::stri
 }
 
 const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string& wanted, float width,
-                                const ByteCursor& file) {
+                                const ByteCursor& file, std::string_view quantity) {
     if (wanted.empty()) {
         if (const VdbGridEntry* fog = default_grid(directory)) return *fog;
         const bool one = width > 0 && directory.grids.size() == 1 && grid_problem(directory.grids[0], width).empty();
@@ -102,12 +105,12 @@ const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string
         refuse_without_fog(directory, file);
     }
     const VdbGridEntry& grid = existing_grid(directory, wanted, file);
-    if (const std::string why = grid_problem(grid, width); !why.empty()) refuse(label(file, grid), why);
+    if (const std::string why = grid_problem(grid, width, quantity); !why.empty()) refuse(label(file, grid), why);
     return grid;
 }
 
 std::vector<const VdbGridEntry*> color_grids(const VdbDirectory& directory, std::span<const std::string> names,
-                                             const ByteCursor& file) {
+                                             const ByteCursor& file, std::string_view quantity) {
     std::vector<std::string> wanted(names.begin(), names.end());
     if (wanted.size() == 1 && !grid_called(directory, wanted[0]) && grid_called(directory, wanted[0] + ".x"))
         wanted = {wanted[0] + ".x", wanted[0] + ".y", wanted[0] + ".z"};
@@ -116,7 +119,8 @@ std::vector<const VdbGridEntry*> color_grids(const VdbDirectory& directory, std:
         const VdbGridEntry& grid = existing_grid(directory, name, file);
         const bool vectors = is_vector_float(grid) && wanted.size() == 1;
         if (!vectors && !is_scalar_float(grid))
-            refuse(label(file, grid), "holds " + printable(grid.type, 40) + " values, not a color per voxel");
+            refuse(label(file, grid),
+                   "holds " + printable(grid.type, 40) + " values, not a " + std::string(quantity) + " per voxel");
         if (!grid.transform_problem.empty()) refuse(label(file, grid), grid.transform_problem);
         grids.push_back(&grid);
     }

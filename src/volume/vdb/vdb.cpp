@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/io/file.h"
 #include "base/text.h"
+#include "volume/bricks/bricks.h"
 #include "volume/vdb/choose.h"
 #include "volume/vdb/codec.h"
 #include "volume/vdb/fog.h"
@@ -54,6 +55,24 @@ template<class Body> auto within_memory(const std::filesystem::path& path, const
     }
 }
 
+// A cleaned volume from one tree; adds its corrections to the report.
+SparseVolume cleaned_volume(DecodedTree tree, const VdbGridEntry& grid, const ByteCursor& file, VdbReadReport& report) {
+    SparseVolume volume;
+    VdbReadReport own;
+    volume.name = grid.name, volume.index_to_world = grid.index_to_world;
+    make_fog(std::move(tree), volume, own, label(file, grid));
+    report.non_finite += own.non_finite, report.negative += own.negative;
+    report.background = own.background, report.empty = own.empty;
+    return volume;
+}
+
+// Marks a grid that spans too many voxels as not usable.
+void check_size(DecodedTree tree, const VdbGridEntry& grid, const ByteCursor& file, VdbGridInfo& info) {
+    VdbReadReport unused;
+    info.why_not = bricks_problem(cleaned_volume(std::move(tree), grid, file, unused));
+    info.usable = info.why_not.empty(), info.is_fog &= info.usable;
+}
+
 VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid) {
     VdbGridInfo info;
     info.name = grid.name, info.type = grid.type, info.grid_class = grid.grid_class;
@@ -70,11 +89,12 @@ VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const Vdb
     const bool numbers = is_scalar_float(grid), vectors = is_vector_float(grid);
     if (numbers || vectors) {
         for (int component = vectors ? 2 : 0; component >= 0; --component) {
-            const DecodedTree tree = load_tree(file, directory, grid, counts, component);
+            DecodedTree tree = load_tree(file, directory, grid, counts, component);
             const ActiveBox box = active_box(tree);
             info.active_low = box.low, info.active_high = box.high;
             add_statistics(tree, info);
             if (vectors) info.ranges.insert(info.ranges.begin(), {info.minimum, info.maximum});
+            if (info.usable && tree.background == 0) check_size(std::move(tree), grid, file, info);
         }
     } else {
         const std::string where = std::exchange(file.where, label(file, grid));
@@ -87,17 +107,6 @@ VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const Vdb
     return info;
 }
 
-// A cleaned volume from one tree; adds its corrections to the report.
-SparseVolume cleaned_volume(DecodedTree tree, const VdbGridEntry& grid, const ByteCursor& file, VdbReadReport& report) {
-    SparseVolume volume;
-    VdbReadReport own;
-    volume.name = grid.name, volume.index_to_world = grid.index_to_world;
-    make_fog(std::move(tree), volume, own, label(file, grid));
-    report.non_finite += own.non_finite, report.negative += own.negative;
-    report.background = own.background, report.empty = own.empty;
-    return volume;
-}
-
 // Distances are known only within the narrow band, whose half width is the background value.
 void check_width(const ValueMap& map, const DecodedTree& tree, const std::string& where) {
     if (!(map.width > tree.background) || !(tree.background > 0)) return;
@@ -106,10 +115,10 @@ void check_width(const ValueMap& map, const DecodedTree& tree, const std::string
 }
 
 SparseVolume read_fog(const std::filesystem::path& path, const std::string& wanted, const ValueMap& map, float most,
-                      VdbReadReport* report) {
+                      VdbReadReport* report, std::string_view quantity) {
     ByteCursor file(path);
     VdbDirectory directory = read_directory(file);
-    const VdbGridEntry& grid = choose_grid(directory, wanted, map.width, file);
+    const VdbGridEntry& grid = choose_grid(directory, wanted, map.width, file, quantity);
     VdbReadReport mended;
     VdbTreeCounts counts;
     mended.grid = grid.name;
@@ -127,7 +136,7 @@ ColorVolume read_color(const std::filesystem::path& path, std::span<const std::s
                        float most, VdbReadReport* report) {
     ByteCursor file(path);
     const VdbDirectory directory = read_directory(file);
-    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file);
+    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file, "color");
     const int channels = is_vector_float(*grids[0]) ? 3 : static_cast<int>(grids.size());
     ColorVolume color;
     VdbReadReport mended;
@@ -159,7 +168,7 @@ VelocityVolume read_velocity(const std::filesystem::path& path, std::span<const 
                              VdbReadReport* report) {
     ByteCursor file(path);
     const VdbDirectory directory = read_directory(file);
-    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file);
+    const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file, "velocity");
     const bool vectors = is_vector_float(*grids[0]);
     if (!vectors && grids.size() == 1)
         refuse(label(file, *grids[0]), "has one number per voxel; velocity needs a vector grid or three scalar grids");
@@ -209,8 +218,8 @@ SparseVolume read_vdb(const std::filesystem::path& path, const std::string& want
 }
 
 SparseVolume read_vdb(const std::filesystem::path& path, const std::string& wanted, const ValueMap& map, float most,
-                      VdbReadReport* report) {
-    return within_memory(path, [&] { return read_fog(path, wanted, map, most, report); });
+                      VdbReadReport* report, std::string_view quantity) {
+    return within_memory(path, [&] { return read_fog(path, wanted, map, most, report, quantity); });
 }
 
 ColorVolume read_color_vdb(const std::filesystem::path& path, std::span<const std::string> grids, const ValueMap& map,

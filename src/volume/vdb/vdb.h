@@ -106,9 +106,9 @@ struct VdbReadReport {
 SparseVolume read_vdb(const std::filesystem::path& file, const std::string& grid = {}, VdbReadReport* report = nullptr);
 
 // The same with every value mapped before cleaning; space without voxels stays 0. Level sets need a map with a width
-// within their narrow band. Values above `most` are clamped and counted.
+// within their narrow band. Values above `most` are clamped and counted. `quantity` is what errors call the values.
 SparseVolume read_vdb(const std::filesystem::path& file, const std::string& grid, const ValueMap& map, float most,
-                      VdbReadReport* report);
+                      VdbReadReport* report, std::string_view quantity = "density");
 
 // A color from a vector grid, three scalar grids, or one scalar grid for all channels.
 struct ColorVolume {

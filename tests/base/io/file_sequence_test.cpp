@@ -109,6 +109,16 @@ TEST_F(Sequence, Gaps) {
     const Error error = error_of([&] { shown(sequence, 1, 5); });
     EXPECT_EQ(error.code, ExitCode::unreadable);
     EXPECT_THAT(error.what(), HasSubstr("a.0003.vdb"));
+    for (const int frame : {3, 4}) {
+        EXPECT_EQ(gap_note(sequence, frame, MissingFrame::hold),
+                  "a.0003.vdb to a.0004.vdb are missing: a.0002.vdb is shown instead");
+        EXPECT_EQ(gap_note(sequence, frame, MissingFrame::skip),
+                  "a.0003.vdb to a.0004.vdb are missing: nothing is shown");
+    }
+    for (const int frame : {-1, 2, 5, 9}) EXPECT_EQ(gap_note(sequence, frame, MissingFrame::hold), "");
+    sequence.files = {1, 2, 4};
+    EXPECT_EQ(gap_note(sequence, 3, MissingFrame::skip), "a.0003.vdb is missing: nothing is shown");
+    sequence.files = {1, 2, 5};
     sequence.mode = SequenceMode::loop;
     EXPECT_THAT(shown(sequence, 6, 10, MissingFrame::skip), ElementsAre(1, 2, -1000, -1000, 5));
 }

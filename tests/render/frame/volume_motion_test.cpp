@@ -23,13 +23,15 @@
 namespace tyndall {
 namespace {
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
+using ::testing::UnorderedElementsAre;
 
 constexpr float voxel = 1.0f / 32;
 
-// A cube of 0.5 m of even fog around a place, with the same velocity in all of its voxels.
-void write_cube(const std::string& file, vec3 center, vec3 velocity, float density = 1) {
-    const ivec3 low = ivec3(glm::round(center / voxel)) - 8, high = low + 15;
-    VdbContent content{{{"density"}, {"vel", true}}, glm::scale(dmat4(1), dvec3(voxel)), {}, {}, {}, {}};
+// A cube of even fog around a place, 16 voxels (0.5 m) wide, with the same velocity in all of its voxels.
+void write_cube(const std::string& file, vec3 center, vec3 velocity, float density = 1, float side = voxel) {
+    const ivec3 low = ivec3(glm::round(center / side)) - 8, high = low + 15;
+    VdbContent content{{{"density"}, {"vel", true}}, glm::scale(dmat4(1), dvec3(side)), {}, {}, {}, {}};
     const ivec3 first = low >> 3, last = high >> 3;
     for (int x = first.x; x <= last.x; ++x)
         for (int y = first.y; y <= last.y; ++y)
@@ -110,6 +112,40 @@ TEST(VolumeMotion, ConstantVelocityBlursToATrapezoid) {
     }
 }
 
+// A fire without smoke has no density, and smoke may be coarser than its fire.
+TEST(VolumeMotion, EmissionMovesWhateverTheDensity) {
+    for (const bool has_smoke : {false, true}) {
+        Moving moving;
+        write_cube(moving.scratch.file("fog.vdb"), vec3(0), {0.4f, 0, 0});
+        moving.move();
+        moving.fog().emission_grid = GridSource{moving.fog().sequence, {"density"}, {}};
+        moving.fog().emission = vec3(1), moving.fog().extinction = has_smoke ? 1e-5f : 0.0f;
+        write_cube(moving.scratch.file("coarse.vdb"), vec3(0), vec3(0), 1, 16 * voxel);
+        moving.fog().sequence.pattern = moving.scratch.file("coarse.vdb");
+        moving.request.time_samples = 64;
+        const FogTravel travel = fog_travel(moving.snapshot(), 0);
+        EXPECT_NEAR(travel.voxels, 0.2 / double{voxel}, 0.3) << has_smoke;
+        EXPECT_GE(travel.places, 20) << has_smoke;
+        const Layers layers = moving.rendered();
+        for (int x = 0; x < 64; ++x) {
+            const float at = (static_cast<float>(x) + 1) / 32 - 1;
+            EXPECT_NEAR(layers.color.at(x, 32).x, 0.5f * covered(at, 0.4f), 0.03f) << has_smoke << " " << x;
+        }
+    }
+}
+
+// A moment at the frame's own time says as much about the speed as any other.
+TEST(VolumeMotion, TheFirstMomentMayBeTheFrames) {
+    Moving moving;
+    write_cube(moving.scratch.file("fog.vdb"), vec3(0), {0.4f, 0, 0});
+    moving.move();
+    moving.scene.cameras[0].shutter = {-0.25, 0.75, {}};
+    moving.request.time_samples = 2;
+    const Snapshot snapshot = moving.snapshot();
+    EXPECT_NEAR(snapshot.moments->at(0).fog_sources[0].bricks->bounds.center().x, -voxel / 2, 0.1f * voxel);
+    EXPECT_NEAR(snapshot.moments->at(1).fog_sources[0].bricks->bounds.center().x, 0.2f - voxel / 2, 0.6f * voxel);
+}
+
 TEST(VolumeMotion, MovesNothingAwayInAnyMode) {
     Moving moving;
     write_cube(moving.scratch.file("fog.vdb"), vec3(0), {0.4f, 0, 0});
@@ -171,6 +207,32 @@ TEST(VolumeMotion, TheFirstMomentHasTheFogOfItsRun) {
     const auto fog_of = [&](size_t moment) { return snapshot.moments->at(moment).fog_sources.at(0).bricks; };
     for (size_t moment = 0; moment < 4; ++moment) EXPECT_EQ(fog_of(moment), fog_of(0)) << moment;
     EXPECT_NE(fog_of(4), fog_of(3));
+}
+
+TEST(VolumeMotion, SaysWhatWasRepairedInItsFiles) {
+    Moving moving;
+    write_cube(moving.scratch.file("fog.vdb"), vec3(0), {voxel, std::nanf(""), 0}); // two runs: the first is made again
+    write_cube(moving.scratch.file("odd.vdb"), vec3(0), vec3(0), 1e5f);
+    moving.move();
+    moving.fog().emission_grid = GridSource{{moving.scratch.file("odd.vdb"), {}, 0, {}}, {"density"}, {}};
+    moving.request.time_samples = 8;
+    EXPECT_THAT(moving.snapshot().notes,
+                UnorderedElementsAre("fog.vdb: grid \"vel\": 4096 non-finite voxels set to 0",
+                                     "odd.vdb: grid \"density\": 4096 voxels above 65504 clamped to it"));
+}
+
+TEST(VolumeMotion, SaysWhichFilesAreMissing) {
+    Moving moving;
+    for (const char* name : {"fog.0000.vdb", "fog.0002.vdb"})
+        write_cube(moving.scratch.file(name), vec3(0), {voxel, 0, 0});
+    moving.number({0, 2}), moving.move();
+    const std::string gap = "fog.0001.vdb is missing: ";
+    for (const auto& [missing, what] :
+         {std::pair{MissingFrame::hold, "fog.0000.vdb is shown instead"}, {MissingFrame::skip, "nothing is shown"}}) {
+        const Snapshot snapshot =
+            make_snapshot(moving.scene, moments_of(moving.scene, moving.request, 1), nullptr, missing);
+        EXPECT_THAT(snapshot.notes, UnorderedElementsAre(gap + what));
+    }
 }
 
 TEST(VolumeMotion, OfTheNearestFrame) {
@@ -254,12 +316,16 @@ TEST(VolumeMotion, AClosedShutterReadsNoVelocity) {
     EXPECT_THAT(error_message(ExitCode::refused, [&] { moving.snapshot(); }), HasSubstr("has no grid \"nothing\""));
 }
 
-TEST(VolumeMotion, AbsurdSpeedsAreOneLine) {
+TEST(VolumeMotion, AbsurdSpeedsAreOneLineWithFileAndField) {
     Moving moving;
     write_cube(moving.scratch.file("fog.vdb"), vec3(0), {3e30f, 0, 0});
     moving.move();
     EXPECT_THAT(error_message(ExitCode::refused, [&] { moving.snapshot(); }),
-                HasSubstr("medium smoke: its velocity moves it"));
+                StartsWith(moving.scene.file.string() + ": medium smoke: density: its velocity moves it by up to"));
+    moving.fog().emission_grid = GridSource{moving.fog().sequence, {"density"}, {}};
+    moving.fog().extinction = 0.0f;
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { moving.snapshot(); }),
+                StartsWith(moving.scene.file.string() + ": medium smoke: emission: its velocity moves it by up to"));
 }
 }
 }

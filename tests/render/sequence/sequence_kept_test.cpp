@@ -177,6 +177,19 @@ TEST(SequenceKept, WhatMovesIsGoneTwoFramesLater) {
     EXPECT_EQ(Counted::alive, 0);
 }
 
+TEST(SequenceKept, FramesIncludeTheTimeTheyWaitedForTheirFog) {
+    const TempFolder in, out;
+    Scene scene = small_scene(in, Moves::fog);
+    scene.media[0].recipe->voxel_size = 0.02f; // takes longer to load than to render
+    RenderRequest job = job_for(scene, "test", out.file("f.####.exr"), {1, 2, 3});
+    job.resolution = {4, 4};
+    const RenderReport report = run(scene, job, mode_of(prepare_noting_fog));
+    double loading = 0, seconds = 0;
+    for (const FrameReport& frame : report.frames) loading += frame.load_seconds, seconds += frame.seconds;
+    EXPECT_GE(seconds, 0.99 * loading);
+    EXPECT_LE(seconds, report.seconds);
+}
+
 TEST(SequenceKept, TheFirstFrameIsLoadedOnce) {
     const TempFolder in, out;
     const Scene scene = small_scene(in, Moves::fog);
@@ -191,6 +204,8 @@ TEST(SequenceKept, TheFirstFrameIsLoadedOnce) {
     EXPECT_EQ(fog_seen[0], bricks);
     EXPECT_NE(fog_seen[1], bricks);
     EXPECT_GT(report.frames[0].load_seconds, 0);
+    EXPECT_GT(report.loading, 0);
+    EXPECT_GE(report.frames[0].seconds, report.loading);
 
     // That of another scene is not taken.
     const Scene other = scene;

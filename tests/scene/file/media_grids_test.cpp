@@ -12,6 +12,7 @@ namespace tyndall {
 namespace {
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -154,6 +155,11 @@ TEST(MediaGrids, InfoSaysWhatToWrite) {
     EXPECT_THAT(medium_text("ball.vdb", info), HasSubstr(R"("density": {"grid": "surface", "width": 1.5})"));
     info.grids = {grid("vel", GridRole::velocity, 3)};
     EXPECT_EQ(medium_text("wind.vdb", info), "");
+    // Densities end at 65504; names that a scene file cannot hold are left out.
+    info.grids = {grid("density", GridRole::density, 3e38f), grid("heat\xff", GridRole::temperature, 1000)};
+    EXPECT_THAT(medium_text("hot.vdb", info), EndsWith(R"("extinction": 3.53e-06, "grids": {"density": "density"}})"));
+    info.grids = {grid("\xffmist", GridRole::density, 2)};
+    EXPECT_EQ(medium_text("mist.vdb", info), R"({"type": "vdb", "file": "mist.vdb", "extinction": 0.115})");
 }
 }
 }

@@ -196,6 +196,7 @@ const Mistake mistakes[] = {
     {R"("media": [{"type": "homogeneous", "extinction": 1, "bounds": {"low": [0, 0, 0], "high": [1, 0, 1]}}])",
      "/media/0/bounds/high/1", "low"},
     {R"("media": [{"type": "homogeneous", "extinction": 1, "scale": [1, 0, 1]}])", "/media/0/scale", "0"},
+    {R"("media": [{"type": "homogeneous", "extinction": 1, "scale": 1e-30}])", "/media/0/scale", "too small"},
     {R"("media": [{"type": "vdb", "file": "a.vdb", "sequence": {"mode": "bounce"}}])", "/media/0/sequence/mode",
      "ping_pong"},
     {R"("media": [{"type": "vdb", "file": "a.vdb", "sequence": {"offset": 1.5}}])", "/media/0/sequence/offset", ""},

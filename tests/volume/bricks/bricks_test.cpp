@@ -5,6 +5,7 @@
 #include "volume/bricks/half.h"
 #include "volume/fog_fixtures.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -273,10 +274,13 @@ TEST(Bricks, RefusesWhatDoesNotFit) {
     scattered.leaves.push_back({ivec3(8000), {}});
     for (Leaf& leaf : scattered.leaves) leaf.values.fill(1);
     EXPECT_EQ(code_of(scattered), ExitCode::out_of_memory);
+    EXPECT_THAT(bricks_problem(scattered), ::testing::HasSubstr("stray voxels"));
 
     SparseVolume huge;
     huge.tiles.push_back({ivec3(0), ivec3(4095), 1});
     EXPECT_EQ(code_of(huge), ExitCode::out_of_memory);
+    EXPECT_EQ(bricks_problem(huge), "spans 4096x4096x4096 voxels, too many to store: use larger voxels");
+    EXPECT_EQ(bricks_problem(constant_box(8, 1)), "");
 
     SparseVolume far = constant_box(8, 1);
     far.leaves[0].origin.x = std::numeric_limits<int>::max() - 7;

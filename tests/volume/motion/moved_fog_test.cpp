@@ -71,6 +71,13 @@ TEST(MovedFog, IsShiftedByAConstantVelocityAndNothingIsCut) {
     }
 }
 
+TEST(MovedFog, AnEmptyGridMovesNowhere) {
+    const VelocityField field = field_in({0, 0, 0}, {7, 7, 7}, [](vec3) { return vec3(8, 0, 0); });
+    EXPECT_TRUE(moved_fog(placed({}), field, 1, "fog").empty());
+    const SparseVolume zero = volume_of(ivec3(0), ivec3(7), [](int, int, int) { return 0.0f; });
+    EXPECT_TRUE(moved_fog(placed(zero), field, 1, "fog").empty());
+}
+
 TEST(MovedFog, WholeVoxelsKeepTheirBits) {
     const SparseVolume noise = volume_of(ivec3(-9, 3, 0), ivec3(20, 11, 17), exact_noise);
     const VelocityField field = field_in({-9, 3, 0}, {20, 11, 17}, [](vec3) { return vec3(8, 0, -16); });

@@ -9,6 +9,7 @@ namespace tyndall {
 namespace {
 using namespace testing;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 
 AuthoredGrid grid_of(const std::string& name, const std::string& type,
@@ -82,6 +83,17 @@ TEST(VdbColor, ThreeGridsOfNumbersAreOneColor) {
     EXPECT_THAT(refused(bytes, {"Cd"}), HasSubstr("has no grid \"Cd\"; it has color.x (float)"));
     EXPECT_THAT(refused(authored({grid_of("flags", "int32", {{{0, 0, 0}, 1}})}), {"flags"}),
                 HasSubstr("holds int32 values, not a color per voxel"));
+}
+
+TEST(VdbColor, RefusalsNameTheQuantityAndOfferWhatCanBeUsed) {
+    const TempFolder scratch;
+    const auto file = scratch.put("in.vdb", authored({grid_of("heat", "float"), grid_of("vel", "vec3i")}));
+    EXPECT_THAT(error_message(ExitCode::refused,
+                              [&] { read_velocity_vdb(file, std::vector<std::string>{"vel"}, ValueMap(), nullptr); }),
+                HasSubstr("holds vec3i values, not a velocity per voxel"));
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { read_vdb(file, "vel", ValueMap(), 1, nullptr, "temperature"); }),
+                HasSubstr("holds vec3i values, not a temperature per voxel"));
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { read_vdb(file); }), EndsWith("to one of heat (float)"));
 }
 
 TEST(VdbMap, ValuesAreMappedBeforeTheyAreCleaned) {

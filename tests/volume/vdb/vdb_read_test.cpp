@@ -91,6 +91,16 @@ TEST(VdbRead, FrustumIsRefused) {
 }
 
 // The library abbreviates large uniform regions at three levels of its tree.
+TEST(VdbRead, InfoSaysWhatIsTooLarge) {
+    const TempFolder scratch;
+    AuthoredGrid grid;
+    grid.tiles = {{ivec3(0), 3, 1}};
+    const VdbGridInfo info = vdb_info(scratch.put("in.vdb", authored({grid}))).grids.at(0);
+    EXPECT_FALSE(info.usable);
+    EXPECT_FALSE(info.is_fog);
+    EXPECT_EQ(info.why_not, "spans 4096x4096x4096 voxels, too many to store: use larger voxels");
+}
+
 TEST(VdbRead, TilesOfEveryLevel) {
     AuthoredGrid grid;
     grid.tiles = {{ivec3(0), 1, 0.1f}, {ivec3(128), 2, 0.2f}, {ivec3(4096), 3, 0.3f}};
