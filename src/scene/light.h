@@ -70,7 +70,7 @@ struct ConeFalloff {
 };
 inline ConeFalloff cone_falloff(const Light& light) {
     const float outer = std::cos(light.outer_cone), half = std::sin(0.5f * light.outer_cone);
-    const float scale = 1 / std::max(std::cos(light.inner_cone) - outer, std::min(1e-6f, 0.5f * half * half));
+    const float scale = 1 / std::max(std::cos(light.inner_cone) - outer, std::clamp(0.5f * half * half, 1e-12f, 1e-6f));
     return {scale, -outer * scale};
 }
 }

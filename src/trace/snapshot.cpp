@@ -154,7 +154,7 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     LightLinks links = light_links(scene, moment.seconds, previous);
     snapshot.casters = std::move(links.casters), snapshot.lit = std::move(links.lit);
     for (size_t i = 0; i < scene.lights.size(); ++i) {
-        vec3 up;
+        vec3 up(0, 1, 0);
         Light light = light_at(scene, scene.lights[i], moment, up);
         add_filter(scene.lights[i], moment, up, missing, previous, light);
         if (const auto& gobo = scene.lights[i].gobo; gobo && !gobo->still)

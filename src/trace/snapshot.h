@@ -38,6 +38,7 @@ struct FogSource {
     std::string key;         // empty = nothing to reuse
     dmat4 index_to_world{1}; // before the medium's transform
     std::shared_ptr<const BrickPool> bricks, placed;
+    float unit = 1;                           // density that a 1 in them stands for
     mat4 matrix{1};                           // the medium's transform
     std::shared_ptr<const MediumGrids> grids; // its grids besides density
 };

@@ -143,6 +143,7 @@ StressScene spinning_gobo(double degrees) {
 
 StressScene fading_lamp(double stops) {
     Scene scene = still_scene();
+    scene.lights[0].direction = from_to(vec3(-0.05f, -1, 0), vec3(0.05f, -1, 0));
     scene.lights[0].exposure = from_to(0.0f, static_cast<float>(-stops));
     return shuttered(std::move(scene), 0, 1);
 }
@@ -189,8 +190,8 @@ std::vector<StressCase> stress_shutters() {
                    fast_cloud, usual),
         StressCase("spinning-gobo", shutter, "a gobo turns", "angle", "degrees", {0, 20, 90}, Claim::physical, excuses,
                    spinning_gobo, usual),
-        StressCase("fading-lamp", shutter, "a lamp goes out", "drop", "stops", {0, 2, 10}, Claim::physical, excuses,
-                   fading_lamp, usual),
+        StressCase("fading-lamp", shutter, "a lamp goes out while it turns", "drop", "stops", {0, 2, 10},
+                   Claim::physical, excuses, fading_lamp, usual),
         StressCase("matte-post", matte, "a holdout post gets thin", "width", "m", {1, 0.3, 0.05}, Claim::physical,
                    excuses, matte_post, usual),
         StressCase("matte-before-eye", matte, "it comes near the camera", "distance", "m", {4, 2, 0.2}, Claim::physical,

@@ -65,9 +65,9 @@ const VdbGridInfo* density_of(const VdbInfo& info) {
 float default_extinction(const VdbGridInfo& fog) {
     const Box voxels{vec3(fog.active_low) - 0.5f, vec3(fog.active_high) + 0.5f};
     const float diagonal = std::max(glm::length(transform(mat4(fog.index_to_world), voxels).size()), 1e-3f);
-    // Bricks hold densities up to the largest half.
-    const float highest = fog.role == GridRole::level_set ? 1.0f : std::min(fog.maximum, largest_half);
-    return 4 / (diagonal * highest);
+    constexpr float stray = 1e30f; // a voxel above is damaged, and is clamped where others are not as large
+    const float highest = fog.maximum > stray ? largest_half : fog.maximum;
+    return 4 / (diagonal * (fog.role == GridRole::level_set ? 1.0f : highest));
 }
 
 std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {

@@ -110,9 +110,7 @@ double reach_of(const IesProfile& profile, const Lattice& lattice) {
             if (profile.shares[static_cast<size_t>(column * profile.rows + row)] > 0) lit = std::max(lit, row + 1);
     return std::min(lattice.first + lit * lattice.row, lattice.last);
 }
-}
 
-namespace {
 // The table as a file, for its lumens: the same rows in every plane.
 IesFile table_of(const IesFile& file, const Lattice& lattice) {
     IesFile table;
@@ -136,9 +134,7 @@ std::string loss_of(const IesFile& file, const Lattice& lattice, double peak) {
     return "its angles are resampled to steps of " + table + ": the peak of " + formatted("%.4g", file.peak()) +
            " candela becomes " + formatted("%.4g", peak) + "; its lumens are kept";
 }
-}
 
-namespace {
 // Degrees over which the light may change: the file's smallest step, but at least 1 degree or 1/64 of a narrow beam,
 // which limits the nodes along rays through it.
 double detail_of(const IesFile& file, double reach) {

@@ -21,7 +21,7 @@ double candela_per_lumen(const LightSource& light, double seconds) {
 double cone_lumens(double inner, double outer) {
     // As in cone_falloff(): ((cosine - edge) / width)² up to the uniform part.
     const double whole = 2 * std::sin(0.5 * outer) * std::sin(0.5 * outer); // 1 - cos(outer)
-    const double width = std::max(std::cos(inner) - std::cos(outer), std::min(1e-6, 0.25 * whole));
+    const double width = std::max(std::cos(inner) - std::cos(outer), std::clamp(0.25 * whole, 1e-12, 1e-6));
     const double even = std::max(whole - width, 0.0), soft = std::min(whole, width);
     return 2 * double{pi} * (even + soft * soft * soft / (3 * width * width));
 }

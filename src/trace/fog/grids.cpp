@@ -175,13 +175,15 @@ void color_medium(const MediumSource& source, double seconds, const MediumGrids&
     medium.optics.albedo_field = grids.placed_color;
 }
 
-void append_light(const MediumSource& source, const Moment& moment, const MediumGrids& grids, Snapshot& snapshot) {
+void append_light(const MediumSource& source, const Moment& moment, const MediumGrids& grids, float unit,
+                  Snapshot& snapshot) {
     const double seconds = moment.seconds;
     if (source.blackbody) {
         const BlackbodySource& blackbody = *source.blackbody;
         vec3 scale =
             mean_brightness(moment, [&](double time) { return blackbody.scale.at(time) * blackbody.tint.at(time); });
         if (blackbody.by_absorption) {
+            scale *= unit;
             scale *= source.channel_extinction ? source.channel_extinction->at(seconds)
                                                : vec3(source.extinction.at(seconds));
             const EmissionField* field = grids.placed_blackbody.field.get();

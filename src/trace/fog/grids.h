@@ -35,9 +35,10 @@ std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Mome
                                                 MissingFrame missing, const mat4& matrix, const FogSource& fog,
                                                 const MediumGrids* before, FogFrames& frames, Snapshot& snapshot);
 
-// Sets a medium's albedo field, and appends its emission to the snapshot's media.
+// Sets a medium's albedo field, and appends its emission to the snapshot's media; `unit`: that of its density.
 void color_medium(const MediumSource& source, double seconds, const MediumGrids& grids, Medium& medium);
-void append_light(const MediumSource& source, const Moment& moment, const MediumGrids& grids, Snapshot& snapshot);
+void append_light(const MediumSource& source, const Moment& moment, const MediumGrids& grids, float unit,
+                  Snapshot& snapshot);
 
 // Whether a medium has grids besides its density.
 bool has_grids(const MediumSource& source);

@@ -5,9 +5,11 @@
 #include "base/io/file.h"
 #include "base/text.h"
 #include "scene/scene.h"
+#include "trace/fog/density_unit.h"
 #include "trace/fog/grids.h"
 #include "trace/fog/motion.h"
 #include "volume/bricks/bricks.h"
+#include "volume/bricks/half.h"
 #include "volume/medium.h"
 #include "volume/vdb/vdb.h"
 
@@ -57,15 +59,16 @@ struct StoredFog {
     bool any = false;        // false = no fog, and no bricks
     dmat4 index_to_world{1}; // before the medium's transform
     BrickPool bricks;
+    float unit = 1;   // as in FogSource
     std::string note; // what was repaired when its file was read
 };
 
 template<class Visit> void fields(StoredFog& fog, Visit& visit) {
-    visit(fog.any), visit(fog.index_to_world), fields(fog.bricks, visit), visit(fog.note);
+    visit(fog.any), visit(fog.index_to_world), fields(fog.bricks, visit), visit(fog.unit), visit(fog.note);
 }
 
-StoredFog stored_fog(const SparseVolume& volume, std::string note) {
-    StoredFog fog{!volume.empty(), volume.index_to_world, {}, std::move(note)};
+StoredFog stored_fog(const SparseVolume& volume, float unit, std::string note) {
+    StoredFog fog{!volume.empty(), volume.index_to_world, {}, unit, std::move(note)};
     if (fog.any) fog.bricks = *make_bricks(volume);
     return fog;
 }
@@ -73,7 +76,7 @@ StoredFog stored_fog(const SparseVolume& volume, std::string note) {
 FogSource source_of(StoredFog fog, std::string key, const std::string& content) {
     FogSource source;
     source.key = std::move(key);
-    source.index_to_world = fog.index_to_world;
+    source.index_to_world = fog.index_to_world, source.unit = fog.unit;
     if (!fog.any) return source;
     fog.bricks.content = content;
     source.bricks = std::make_shared<const BrickPool>(std::move(fog.bricks));
@@ -84,7 +87,7 @@ FogSource grown(const MediumSource& source, double seconds, CacheFolder* files, 
     const FogRecipe recipe = medium_recipe(source);
     const std::string key = recipe_key(recipe, seconds);
     if (key == before.key) return before;
-    const auto grow_fog = [&] { return stored_fog(generate(recipe, seconds), {}); };
+    const auto grow_fog = [&] { return stored_fog(generate(recipe, seconds), 1, {}); };
     return source_of(load_or_build<StoredFog>(files, "bricks", key, grow_fog), key, files ? key : "");
 }
 
@@ -110,8 +113,10 @@ FogSource read(const MediumSource& source, int frame, const ReadContext& reading
               : std::string();
     const StoredFog fog = load_or_build<StoredFog>(files, "bricks", content, [&] {
         VdbReadReport report;
-        const SparseVolume volume = read_vdb(*file, source.density_grid, source.density_map, infinity, &report);
-        return within(file->string(), [&] { return stored_fog(volume, report.summary()); });
+        SparseVolume volume = read_vdb(*file, source.density_grid, source.density_map, infinity, &report);
+        const float unit = density_unit(volume);
+        report.above = divide_by(unit, volume), report.most = unit * largest_half;
+        return within(file->string(), [&] { return stored_fog(volume, unit, report.summary()); });
     });
     if (!fog.note.empty()) reading.notes.push_back(file->filename().string() + ": " + fog.note);
     return source_of(fog, key, content);
@@ -137,9 +142,10 @@ FogSource read_between(const MediumSource& source, const SequenceTime& time, con
     if (reading.files)
         content = "file " + content_hash(content_of(here) + "\n" + content_of(next) + "\n" + time.content());
     const StoredFog fog = load_or_build<StoredFog>(reading.files, "bricks", content, [&] {
-        return stored_fog(volume_at(time, {here.bricks, here.index_to_world}, {next.bricks, next.index_to_world},
-                                    moved_name(reading.scene, source.name, "density")),
-                          {});
+        const SparseVolume volume =
+            volume_at(time, {here.bricks, here.index_to_world, here.unit},
+                      {next.bricks, next.index_to_world, next.unit}, moved_name(reading.scene, source.name, "density"));
+        return stored_fog(volume, here.bricks ? here.unit : next.unit, {});
     });
     return source_of(fog, key, content);
 }
@@ -249,6 +255,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
         fog.grids = std::move(grids);
     }
     if (fog_is_there) {
+        medium.optics.extinction *= fog.unit, medium.optics.emission.radiance *= fog.unit;
         if (!dims) medium.optics.extinction = vec3(min_extinction);
         if (!dims && !is_finite(medium.world_bounds.size()))
             refuse(scene.file.string(),
@@ -256,7 +263,7 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
         if (fog.grids) color_medium(source, moment.seconds, *fog.grids, medium);
         snapshot.media.push_back(std::move(medium));
     }
-    if (fog.grids) append_light(source, moment, *fog.grids, snapshot);
+    if (fog.grids) append_light(source, moment, *fog.grids, fog.unit, snapshot);
 }
 }
 
@@ -267,7 +274,8 @@ void add_to_channels(const MediumSource& source, double seconds, size_t first, S
         std::vector<Medium>& media = snapshot.channel_media[c];
         media.insert(media.end(), snapshot.media.begin() + static_cast<std::ptrdiff_t>(first), snapshot.media.end());
         if (!source.channel_extinction) continue;
-        const float extinction = source.channel_extinction->at(seconds)[static_cast<glm::length_t>(c)];
+        const float extinction =
+            snapshot.fog_sources.back().unit * source.channel_extinction->at(seconds)[static_cast<glm::length_t>(c)];
         for (size_t m = first; m < media.size(); ++m)
             if (!only_emits(media[m].optics)) media[m].optics.extinction = vec3(std::max(extinction, min_extinction));
     }

@@ -10,6 +10,7 @@ namespace tyndall {
 struct PlacedBricks {
     std::shared_ptr<const BrickPool> bricks; // null = none
     dmat4 index_to_world{1};
+    float unit = 1; // what a 1 in them stands for
 };
 
 struct LuminanceBricks {

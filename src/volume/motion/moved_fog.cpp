@@ -198,7 +198,9 @@ SparseVolume blended_fog(const PlacedBricks& a, const PlacedBricks& b, float sha
     SparseVolume volume;
     const bool on_b = !a.bricks || (b.bricks && voxel_volume(b) < (1 - 1e-9) * voxel_volume(a));
     volume.name = what, volume.index_to_world = on_b ? b.index_to_world : a.index_to_world;
-    const BlendPart parts[] = {part_of(a, 1 - share, volume.index_to_world), part_of(b, share, volume.index_to_world)};
+    const float unit = a.bricks ? b.unit / a.unit : 1;
+    const BlendPart parts[] = {part_of(a, 1 - share, volume.index_to_world),
+                               part_of(b, share * unit, volume.index_to_world)};
 
     // Collect each cell once.
     dvec3 low(infinity), high(-infinity);
@@ -215,7 +217,7 @@ SparseVolume blended_fog(const PlacedBricks& a, const PlacedBricks& b, float sha
             const auto first = parts[0].even(cell), second = parts[1].even(cell);
             if (!first || !second)
                 cells.push_back(cell);
-            else if (const float value = (1 - share) * *first + share * *second; value > 0)
+            else if (const float value = parts[0].weight * *first + parts[1].weight * *second; value > 0)
                 volume.tiles.push_back({cell * 8, cell * 8 + 7, value});
         }
 

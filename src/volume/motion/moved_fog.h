@@ -15,7 +15,7 @@ struct VelocityField;
 // refused if it would move by thousands of voxels; out_of_memory.
 SparseVolume moved_fog(const PlacedBricks& fog, const VelocityField& velocity, double time, const std::string& what);
 
-// (1 - share)·a + share·b on the finer of the two voxel grids, or on a's if they are equally fine. Either may have no
-// bricks. Throws Error (refused, out_of_memory).
+// (1 - share)·a + share·b, in a's unit if it has bricks, on the finer of the two voxel grids, or on a's if they are
+// equally fine. Either may have no bricks. Throws Error (refused, out_of_memory).
 SparseVolume blended_fog(const PlacedBricks& a, const PlacedBricks& b, float share, const std::string& what);
 }
