@@ -50,16 +50,18 @@ template<class T> T Keyed<T>::at(double seconds) const {
 }
 
 template<class T> void add_key_times(const Keyed<T>& keyed, double from, double to, std::vector<double>& times) {
-    constexpr size_t most = 4096;
+    constexpr double most = 4096;
     if (keyed.constant()) return;
     const double first = keyed.times.front(), period = double{keyed.times.back()} - first;
     const bool repeats = keyed.loop && period > 0;
-    double start = repeats ? period * std::floor((from - first) / period) : 0; // of the keys' repetition
-    for (size_t added = 0; added < most && first + start < to; start += period) {
-        for (const float key : keyed.times)
-            if (start + key > from && start + key < to) times.push_back(start + key), ++added;
-        if (!repeats) return;
-    }
+    const double turns = repeats ? std::ceil((to - from) / period) : 0; // repetitions that begin in that time
+    if (!(turns * static_cast<double>(keyed.times.size()) < most)) return;
+    const double start = repeats ? period * std::floor((from - first) / period) : 0;
+    for (int turn = 0; turn <= static_cast<int>(turns); ++turn)
+        for (const float key : keyed.times) {
+            const double time = start + turn * period + key;
+            if (time > from && time < to) times.push_back(time);
+        }
 }
 
 template struct Keyed<float>;

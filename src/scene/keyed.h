@@ -24,7 +24,7 @@ template<class T> struct Keyed {
     T at(double seconds) const;
 };
 
-// Appends the times of the keys between two times, repetitions included, in ascending order: at most 4096 of them.
+// Appends the times of the keys between two times, repetitions included; none if a loop has thousands of them there.
 template<class T> void add_key_times(const Keyed<T>& keyed, double from, double to, std::vector<double>& times);
 
 // Implemented for float, vec3 and quat (spherical interpolation).
