@@ -1,20 +1,25 @@
-// Where to split the integration along rays for narrow phase function lobes. Those of droplets fall off within a
-// fraction of a degree, while the rest of the integrand varies smoothly with the angle seen from the light.
+// Where to split the integration along rays for narrow phase function lobes and for peaks and bends of tables. Those of
+// droplets fall off within a fraction of a degree, while the rest of the integrand varies smoothly with the angle seen
+// from the light.
 #pragma once
 #include <span>
 
 namespace tyndall {
 struct Medium;
 
-// Slopes u / h of points on a ray, where u is measured from the point closest to the light, at distance h. Ascending;
-// the angle from the lobe's axis doubles from one to the next, both forward and backward. Empty if no lobe is narrow.
+// Slopes u / h of points on a ray, where u is measured from the point closest to the light, at distance h; ascending.
+// Empty if all phase functions are smooth.
 struct LobeCuts {
     int count = 0;
-    float slopes[32] = {};
+    float slopes[64] = {};
 };
 
 inline constexpr float wide_lobe = 0.3f; // 1 - |g| above which no cuts are needed
 
 // Cuts for multi-lobe and tabulated phase functions; single lobes are handled through their g.
 LobeCuts lobe_cuts(std::span<const Medium> media);
+
+// Width in radians of the narrowest peak or bend of a medium's tabulated phase function, at more than 5 degrees from
+// the forward and backward directions; π for any other.
+float narrowest_halo(const Medium& medium);
 }

@@ -16,7 +16,7 @@ inline constexpr LimitationKind lamp_for_face{
 inline constexpr LimitationKind out_of_gamut{
     "out_of_gamut", "{}% of its light, below {n} K, is outside the Rec.709 gamut: clamped to the reddest color"};
 inline constexpr LimitationKind unscattered_emission{
-    "unscattered_emission", "its emission is visible but illuminates nothing: {} lumens (path includes them)"};
+    "unscattered_emission", "its emission, at most {} nits, is visible but illuminates nothing (path includes that)"};
 inline constexpr LimitationKind lamps_for_fire{
     "lamps_for_fire", "its light in fog has an error above 10% within {} m of the {n} lamps that approximate it"};
 inline constexpr LimitationKind lamps_for_surfaces{
@@ -26,7 +26,9 @@ inline constexpr LimitationKind emission_lights_nothing{
     "emission_lights_nothing", "emission of MASK and BLEND surfaces is visible but illuminates nothing else"};
 inline constexpr LimitationKind emission_lights_no_fog{"emission_lights_no_fog",
                                                        "its emission illuminates surfaces, but is ignored in fog"};
-inline constexpr LimitationKind emission_left_out{"emission_left_out", "its emission is ignored: {} lumens"};
+inline constexpr LimitationKind fire_left_out{"fire_left_out", "its fire is ignored: {} lumens"};
+inline constexpr LimitationKind emission_left_out{"emission_left_out", "its emission is ignored: at most {} nits"};
+inline constexpr LimitationKind ambient_left_out{"ambient_left_out", "ambient light is ignored in fog: {} nits"};
 }
 
 // Reports emission of media outside the Rec.709 gamut and, with `lights_nothing`, emission without a grid, which is
@@ -50,6 +52,7 @@ void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations
 // Reports materials whose emission illuminates nothing.
 void add_dark_emission(const Snapshot& snapshot, Limitations& limitations);
 
-// Reports what is ignored in fog where only lamps illuminate it: media and surfaces that emit, and an environment.
+// Reports what is ignored in fog where only lamps illuminate it: media and surfaces that emit, ambient light and an
+// environment.
 void add_left_out_light(const Snapshot& snapshot, bool surfaces_emit, Limitations& limitations);
 }

@@ -117,20 +117,21 @@ void apply_texture(AreaShape& shape, Light& light) {
     }
     const vec2 middle = vec2(sums.middle) * shape.half;
     light.position = shape.center + middle.x * shape.right + middle.y * shape.up;
-    const glm::dvec2 spread = (sums.square - sums.middle * sums.middle) * glm::dvec2(shape.half * shape.half);
-    shape.spread = static_cast<float>(3 * (spread.x + spread.y)) / glm::dot(shape.half, shape.half);
+    shape.spread = vec2(3.0 * (sums.square - sums.middle * sums.middle));
 }
 
-double axial_steradians(const AreaShape& shape, double distance) {
-    const double a = shape.half.x, b = shape.half.y, d = distance;
-    switch (shape.kind) {
-    case LightKind::rectangle:
-        return 4 * std::asin(a * b / std::sqrt((a * a + d * d) * (b * b + d * d)));
-    case LightKind::disc:
-        return 2 * double{pi} * (1 - d / std::hypot(d, a));
-    default:
-        return d > a ? 2 * double{pi} * (1 - std::sqrt(1 - a * a / (d * d))) : 4 * double{pi};
+// Relative error of a lamp's light at an offset from the center, in axes right, up and normal. Discs and
+// textured faces count as the rectangle whose emission varies as much in position.
+double lamp_error(const AreaShape& shape, dvec3 offset) {
+    const double distance = glm::length(offset), square = 1 / (distance * distance);
+    if (is_ball(shape)) {
+        if (distance <= shape.half.x) return infinity;
+        return face_area(shape) * square / ball_steradians(shape, shape.center + vec3(float(distance), 0, 0)) - 1;
     }
+    const glm::dvec2 spread = glm::max(glm::dvec2(shape.spread), 1e-4) * (shape.kind == LightKind::disc ? 0.75 : 1.0);
+    const glm::dvec2 half = glm::dvec2(shape.half) * glm::sqrt(spread);
+    const SphericalRectangle seen(dvec3(0), {1, 0, 0}, {0, 1, 0}, half, offset);
+    return 4 * half.x * half.y * offset.z / distance * square / seen.steradians - 1;
 }
 }
 
@@ -208,14 +209,19 @@ vec3 rough_irradiance(const Light& light, vec3 point) {
 
 double far_distance(const AreaShape& shape, double share) {
     const double size = std::sqrt(face_area(shape) / pi);
-    const auto off = [&](double d) {
-        return std::abs(face_area(shape) / (d * d) / axial_steradians(shape, d) - 1) > share;
-    };
-    double low = size, high = 1e4 * size;
-    for (int i = 0; i < 60; ++i) {
-        const double middle = 0.5 * (low + high);
-        (off(middle) ? low : high) = middle;
-    }
-    return std::max(size, std::sqrt(double{shape.spread}) * high); // the error grows with the variance of the emission
+    double farthest = size;
+    for (const double slant : {0.0, 30.0, 60.0, 70.0, 80.0})
+        for (const double turn : {0.0, 45.0, 90.0}) {
+            const double polar = glm::radians(slant), around = glm::radians(turn);
+            const dvec3 direction(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
+                                  std::cos(polar));
+            double low = size, high = 1e4 * size;
+            for (int i = 0; i < 40; ++i) {
+                const double middle = std::sqrt(low * high);
+                (std::abs(lamp_error(shape, middle * direction)) > share ? low : high) = middle;
+            }
+            farthest = std::max(farthest, high);
+        }
+    return farthest;
 }
 }

@@ -16,7 +16,8 @@ struct AreaShape {
     // Rectangle: texture on the radiance, oriented as a screen shows it to a viewer in front; null = uniform.
     std::shared_ptr<const Gobo> texture;
     vec3 texture_scale{1}; // scales the texture's mean to 1; set by make_punctual()
-    float spread = 1;      // variance of the emission's position, relative to a uniform face; set by make_punctual()
+    vec2 spread{1};        // variance of the emission's position along right and up, relative to a uniform face; set by
+                           // make_punctual()
 };
 
 // Area of the face projected along its axis, m².
@@ -53,7 +54,7 @@ float area_hit(const AreaShape& shape, const Ray& ray);
 // Rough estimate of the irradiance at a point: never 0 where any light arrives, 0 behind the face.
 vec3 rough_irradiance(const Light& light, vec3 point);
 
-// Distance from the center along the axis, in meters, within which the relative error of the make_punctual()
-// approximation exceeds `share` for the light that falls on fog.
+// Distance from the center in meters, at up to 80 degrees from the axis, within which the relative error of the
+// make_punctual() approximation exceeds `share` for the light that falls on fog.
 double far_distance(const AreaShape& shape, double share);
 }

@@ -29,7 +29,6 @@ struct Material {
     int emission_texture = -1;
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;
-    bool double_sided = false; // affects shading normals only; every face casts shadows
 };
 
 // Offsets added to a mesh's vertices, times a weight; empty = none.

@@ -40,9 +40,7 @@ void see_light(const Occluders& occluders, const Light& light, std::span<const S
     Occluders::ShadowRays rays{};
     for (size_t i = 0; i < points.size(); ++i) {
         const SurfacePoint& point = points[i];
-        Ray ray = ray_to_light(light, point.position, u[i]);
-        ray.origin = off_surface(point.position, point.face_normal, ray.direction);
-        rays.set(i, ray);
+        rays.set(i, off_surface(point.face_normal, ray_to_light(light, point.position, u[i])));
         rays.active[i] = packet.active[i];
     }
     occluders.transmission(rays, visibility);

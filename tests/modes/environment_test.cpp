@@ -302,6 +302,22 @@ TEST(Environment, ItsMeanIsAsFarOffAsModesSay) {
     }
 }
 
+// A speck of fog in the image, and a sky of blue above and red below that are as bright as each other.
+TEST(Environment, ItsMeanIsMeasuredWhereFogIsAndInEachChannel) {
+    const auto stated = [](Box box, const std::shared_ptr<const Environment>& sky) {
+        Snapshot snapshot = snapshot_of({homogeneous_medium(8, box)});
+        snapshot.environment = sky;
+        const View view = view_of({0, 0, 5}, {0, 0, 0}, {48, 27}, 0.9f);
+        for (const Limitation& one : find_mode("cone").limitations(view, snapshot, Settings{}))
+            if (one.is(limitation::mean_environment)) return one.amounts[0];
+        return -1.0;
+    };
+    EXPECT_GT(stated({vec3(0.1f), vec3(0.2f)}, make_environment(half_sky())), 20);
+    const vec3 blue(0, 0, 1), red(1, 0, 0);
+    const auto colored = [&](vec3 d) { return d.y > 0 ? blue / luminance(blue) : red / luminance(red); };
+    EXPECT_GT(stated({vec3(-0.5f), vec3(0.5f)}, make_environment(map_of({64, 512}, colored))), 50);
+}
+
 TEST(Environment, ModesWithItsMeanHaveItAsAmbientLight) {
     Snapshot snapshot = snapshot_of({homogeneous_medium(0.01f, unit_box)}), even = snapshot;
     snapshot.environment = make_environment(half_sky());

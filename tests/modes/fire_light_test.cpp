@@ -196,6 +196,29 @@ TEST(FireLight, FarEnoughIsWhereABallIsOffBySoMuch) {
     EXPECT_NEAR(sum / weight * d * d - 1, 0.02, 0.002);
 }
 
+// Emission that follows the density lights nothing outside path, and nothing of it or of ambient light is drawn by
+// cards.
+TEST(FireLight, GlowingFogAndAmbientLightThatAreLeftOutAreSaid) {
+    const auto amount = [](const char* mode, const Snapshot& snapshot, const LimitationKind& kind) {
+        for (const Limitation& one : find_mode(mode).limitations(View{}, snapshot, Settings{}))
+            if (one.is(kind)) return one.amounts[0];
+        return -1.0;
+    };
+    for (const Box& box : {everywhere(), Box{vec3(-1e3f), vec3(1e3f)}}) {
+        Medium fog = homogeneous_medium(0.5f, box);
+        fog.optics.emission.radiance = vec3(3);
+        Snapshot snapshot = snapshot_of({fog}, {point_light({1, 1, 1}, 2)});
+        snapshot.ambient = vec3(20);
+        for (const char* mode : {"march", "froxel", "cone", "shadow-volume"})
+            EXPECT_NEAR(amount(mode, snapshot, limitation::unscattered_emission), 6, 0.05) << mode;
+        for (const char* mode : {"billboard", "radial-blur"}) {
+            EXPECT_NEAR(amount(mode, snapshot, limitation::emission_left_out), 6, 0.05) << mode;
+            EXPECT_NEAR(amount(mode, snapshot, limitation::ambient_left_out), 20, 1e-4) << mode;
+        }
+        EXPECT_EQ(amount("path", snapshot, limitation::unscattered_emission), -1);
+    }
+}
+
 TEST(FireLight, PartsAndLimitationsSayWhatBecomesOfIt) {
     const Medium fog = homogeneous_medium(0.5f, {vec3(-3), vec3(3)}, forward_phase(0.2f), vec3(0.8f));
     const Snapshot snapshot = snapshot_of({fog, glowing_ball({0, 0.5f, 0})}, {point_light({1, 1, 1}, 2)});

@@ -30,6 +30,13 @@ std::vector<NamedPhase> some_phases() {
             {"table", tabulated_bow(0.9)}};
 }
 
+std::vector<NamedPhase> peaked_phases() {
+    return {{"halo of ice crystals",
+             tabulated(
+                 {{0, 3}, {21, 0.5}, {22, 30}, {23, 0.3}, {90, 0.05}, {137, 0.05}, {138, 3}, {139, 0.1}, {180, 0.1}})},
+            {"light to the side", tabulated({{0, 0.1}, {89, 0.1}, {90, 5}, {91, 0.1}, {180, 0.1}})}};
+}
+
 // A ray from the eye that passes a lamp of 1 cd at a distance h, `before` meters behind the eye, and goes on for as
 // long, in fog of extinction s that is everywhere.
 double lamp_light(const Phase& phase, double s, double h, double before) {
@@ -70,7 +77,11 @@ TEST(PhaseKinds, LampsInFogOfClosedFormAreTheIntegral) {
         double allowed; // share
     } rows[] = {{"march", 3e-3}, {"shadow-volume", 3e-3}, {"cone", 2e-3}, {"froxel", 0.01}, {"shadow-map", 0.12}};
     const LampRays lamp;
-    for (const NamedPhase& one : some_phases()) {
+    std::vector<NamedPhase> phases = some_phases();
+    const size_t even = phases.size(); // the steps of shadow-map are too long for what follows, as it says
+    std::ranges::copy(peaked_phases(), std::back_inserter(phases));
+    for (size_t p = 0; p < phases.size(); ++p) {
+        const NamedPhase& one = phases[p];
         const Snapshot snapshot =
             snapshot_of({homogeneous_medium(s, everywhere(), one.phase)}, {point_light(vec3(0), 1)});
         const auto expect_integral = [&](const std::vector<Scatter>& seen, const char* mode, double allowed) {
@@ -80,6 +91,7 @@ TEST(PhaseKinds, LampsInFogOfClosedFormAreTheIntegral) {
                     << mode << ", " << one.name << ", ray " << i;
         };
         for (const auto& row : rows) {
+            if (p >= even && std::string_view(row.mode) == "shadow-map") continue;
             Settings settings = settings_for(Quality::final);
             settings.terms.light = LightTransmittance::marched;
             expect_integral(run_mode(row.mode, lamp.view, snapshot, settings, lamp.rays), row.mode, row.allowed);
@@ -128,6 +140,8 @@ TEST(PhaseKinds, FroxelsSayThatTheyBlurTheGlowOfASun) {
     EXPECT_TRUE(has_limitation(said(mie_phase(20), view), limitation::coarse_glow));
     EXPECT_FALSE(has_limitation(said(mie_phase(20), beside), limitation::coarse_glow)) << "the sun is not in the image";
     EXPECT_FALSE(has_limitation(said(forward_phase(0.8f), view), limitation::coarse_glow));
+    EXPECT_TRUE(has_limitation(said(peaked_phases()[0].phase, beside), limitation::coarse_glow)) << "a halo";
+    EXPECT_FALSE(has_limitation(said(legendre_of(0.5, 20), beside), limitation::coarse_glow));
     for (const Limitation& one : said(mie_phase(20), view))
         if (one.is(limitation::coarse_glow)) {
             EXPECT_NEAR(one.amounts[0], 0.77 * 0.00539 * 180 / std::numbers::pi, 0.01);

@@ -15,7 +15,6 @@ void add_plane(Scene& scene, float z, float half, vec3 emission, float alpha) {
     Material material;
     material.base_color = vec3(0), material.emission = emission, material.alpha = alpha;
     material.alpha_mode = alpha < 1 ? AlphaMode::blend : AlphaMode::opaque;
-    material.double_sided = true;
     Mesh mesh;
     mesh.positions = {{-half, -half, z}, {half, -half, z}, {half, half, z}, {-half, half, z}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}};

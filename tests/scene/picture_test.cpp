@@ -67,13 +67,27 @@ TEST(ImageFile, OpenExrFillsItsDisplayWindow) {
     EXPECT_EQ(image.at(2, 1), vec3(1, 0, 3));
     EXPECT_EQ(image.at(0, 0), vec3(0));
     EXPECT_EQ(image.at(3, 1), vec3(0));
-    EXPECT_THAT(note, HasSubstr("1 pixels with negative values"));
+    EXPECT_THAT(note, HasSubstr("1 pixel with negative values"));
 
     const Image<vec3> gray = decode_image(openexr_of(folder, {2, 1}, {0, 0}, pixels, true), "test", note);
     EXPECT_EQ(gray.at(0, 0), vec3(70000));
     const ReducedImage half = decode_reduced(openexr_of(folder, {2, 1}, {0, 0}, pixels), false, 100, 1, "test", note);
     EXPECT_EQ(half.factor, 2);
     EXPECT_EQ(half.image.at(0, 0), vec3(70001, -1.5f, 3.25f) / 4.0f);
+}
+
+// Suns brighter than the largest half float are infinite in files of halves.
+TEST(ImageFile, InfiniteSuns) {
+    const TempFolder folder;
+    Image<vec3> pixels({2, 1}, vec3(1));
+    pixels.at(1, 0) = {infinity, 3, infinity};
+    std::string note;
+    Image<vec3> sky = decode_image(openexr_of(folder, {2, 1}, {0, 0}, pixels), "test", note);
+    EXPECT_EQ(sky.at(1, 0), vec3(65504, 3, 65504));
+    EXPECT_THAT(note, HasSubstr("1 infinite pixel, read as 65504"));
+    pixels.at(0, 0).x = 1e5f;
+    sky = decode_image(openexr_of(folder, {2, 1}, {0, 0}, pixels), "test", note);
+    EXPECT_EQ(sky.at(1, 0), vec3(1e5f, 3, 1e5f));
 }
 
 TEST(ImageFile, OpenExrThatIsNoPicture) {
@@ -86,13 +100,13 @@ TEST(ImageFile, OpenExrThatIsNoPicture) {
     const std::string whole = openexr_of(folder, {2, 1}, {0, 0}, pixels);
     EXPECT_THAT(refusal(whole.substr(0, whole.size() - 4)), HasSubstr("sky.exr"));
     EXPECT_THAT(refusal(openexr_of(folder, {16000, 16000}, {0, 0}, pixels)), HasSubstr("less than 1/16"));
-    pixels.at(1, 0).y = std::numeric_limits<float>::infinity();
+    pixels.at(1, 0).y = -std::numeric_limits<float>::infinity();
     EXPECT_THAT(refusal(openexr_of(folder, {2, 1}, {0, 0}, pixels)),
-                HasSubstr("1 pixel is not finite (inf or NaN), at x 1, y 0 from the upper left; "));
+                HasSubstr("1 pixel is not finite (-inf or NaN), at x 1, y 0 from the upper left; "));
     Image<vec3> larger({5, 4}, vec3(1));
     larger.at(3, 2).x = std::numeric_limits<float>::quiet_NaN(), larger.at(0, 3) = vec3(-1 / 0.0f);
     EXPECT_THAT(refusal(openexr_of(folder, {6, 4}, {1, 0}, larger)),
-                HasSubstr("2 pixels are not finite (inf or NaN), the first one at x 4, y 2 from the upper left; "));
+                HasSubstr("2 pixels are not finite (-inf or NaN), the first one at x 4, y 2 from the upper left; "));
 }
 }
 }

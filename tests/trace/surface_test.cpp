@@ -106,6 +106,23 @@ TEST(Surface, ShadowsFollowTheSceneAndTheSwitch) {
 }
 
 // Half of a soft light behind an edge: half of its light on average.
+// The ceiling is less above the lamp than rays start from the floor.
+TEST(Surface, LampsJustBelowACeilingLightTheFloorFarFromTheOrigin) {
+    for (const float x : {0.0f, 100.0f, 150.0f, 700.0f}) {
+        Scene scene;
+        add_mesh(scene, quad({x - 2, 3, -2}, {4, 0, 0}, {0, 0, 4}));
+        Snapshot snapshot;
+        snapshot.scene = &scene, snapshot.occluders = Occluders::make(scene, 0, nullptr);
+        Light lamp;
+        lamp.kind = LightKind::point, lamp.position = {x, 2.9999f, 0}, lamp.intensity = vec3(9);
+        snapshot.lights = {lamp};
+        const SurfacePoint below = ground_point({x, 0, 0});
+        expect_color(shade(snapshot, below).radiance, below.base_color / pi, 2e-4f);
+        snapshot.lights[0].position.y = 3.01f;
+        expect_color(shade(snapshot, below).radiance, vec3(0));
+    }
+}
+
 TEST(Surface, SoftLightsHavePenumbras) {
     Scene scene;
     add_mesh(scene, quad(vec3(0, 1, -5), vec3(5, 0, 0), vec3(0, 0, 10)));

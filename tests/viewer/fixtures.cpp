@@ -34,7 +34,7 @@ std::shared_ptr<Scene> small_scene(const std::filesystem::path& file) {
     mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 6, 5}};
     mesh.material = 0;
     Material material;
-    material.base_color = vec3(0.5f), material.double_sided = true;
+    material.base_color = vec3(0.5f);
     scene.meshes = {mesh}, scene.materials = {material};
     scene.nodes = {Node{}};
     scene.instances = {{0, 0}};

@@ -133,8 +133,8 @@ void look_at(const LampPart& part, const Occluders& glowing, dvec3 eye, bool far
             const double distance = glm::length(offset);
             const vec3 direction(offset / distance);
             facing[i] = std::abs(glm::dot(point.normal, offset)) / distance / (far ? 1 : distance * distance);
-            rays.set(i, {off_surface(vec3(point.position), vec3(point.normal), direction), direction,
-                         far ? infinity : static_cast<float>(distance)});
+            const float length = far ? infinity : static_cast<float>(distance);
+            rays.set(i, off_surface(vec3(point.normal), {vec3(point.position), direction, length}));
         }
         std::fill_n(shares, 16, 1.0f);
         glowing.transmission(rays, shares);

@@ -8,7 +8,7 @@ namespace tyndall {
 float glow_angle(const Phase& phase) { return 0.77f * (1 - narrowest_g(phase)); }
 
 float tile_angle(const View& view, int tile) {
-    if (view.camera.ortho_height > 0 || tile == 1) return 0;
+    if (view.camera.ortho_height > 0) return 0;
     return view_height(view.camera) / static_cast<float>(view.size.y) * static_cast<float>(tile);
 }
 
@@ -26,7 +26,7 @@ std::vector<Medium> media_in_sunlight(const View& view, const Snapshot& snapshot
         return medium.optics.phase.shape && is_narrow(medium.optics.phase, across);
     };
     const bool suns = std::ranges::any_of(snapshot.lights, [](const Light& light) { return is_distant(light); });
-    if (!suns || std::ranges::none_of(snapshot.media, narrow)) return {};
+    if (!suns || tile == 1 || std::ranges::none_of(snapshot.media, narrow)) return {};
     std::vector<Medium> media = snapshot.media;
     // Convolved twice with disks of a froxel's area: smooth enough that the sum over froxels hardly depends on their
     // alignment.

@@ -16,13 +16,12 @@ float glow_angle(const Phase& phase);
 // counts, and needs three froxels.
 inline bool is_narrow(const Phase& phase, float across) { return glow_angle(phase) < (phase.shape ? 3 : 1) * across; }
 
-// Angular width of a froxel at the image's center, radians; 0 with an orthographic camera, and for froxels of one
-// pixel.
+// Angular width of a froxel at the image's center, radians; 0 with an orthographic camera.
 float tile_angle(const View& view, int tile);
 
 // Whether a light is a sun within the image.
 bool shows_sun(const View& view, const Snapshot& snapshot, const Light& light);
 
-// The media with narrow phase functions widened to froxels; empty if there are none.
+// The media with narrow phase functions widened to froxels; empty if there are none, or if froxels are pixels.
 std::vector<Medium> media_in_sunlight(const View& view, const Snapshot& snapshot, int tile);
 }

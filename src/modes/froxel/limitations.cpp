@@ -1,5 +1,6 @@
 #include "modes/froxel/limitations.h"
 
+#include "integrate/lobe_cuts.h"
 #include "modes/area_light_limitations.h"
 #include "modes/froxel/beams/beam_shadows.h"
 #include "modes/froxel/beams/beams.h"
@@ -51,13 +52,16 @@ Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSett
     return {by_ray && (has_cone(light) || exact), exact && !(casters && casters->has_alpha())};
 }
 
-// Reports a sun in the image whose glow is narrower than a froxel.
+// Reports a sun whose glow, or a halo of which, is narrower than a froxel.
 void add_glow(const View& view, const Snapshot& snapshot, const Light& light, int tile, Limitations& limitations) {
-    if (!shows_sun(view, snapshot, light)) return;
+    if (!is_distant(light)) return;
+    const bool seen = shows_sun(view, snapshot, light);
     const float across = tile_angle(view, tile);
     float glow = pi;
-    for (const Medium& medium : snapshot.media)
-        if (is_narrow(medium.optics.phase, across)) glow = std::min(glow, glow_angle(medium.optics.phase));
+    for (const Medium& medium : snapshot.media) {
+        if (seen && is_narrow(medium.optics.phase, across)) glow = std::min(glow, glow_angle(medium.optics.phase));
+        if (const float halo = narrowest_halo(medium); halo < 3 * across) glow = std::min(glow, halo);
+    }
     if (glow < pi)
         limitations.push_back({Severity::degraded,
                                &limitation::coarse_glow,

@@ -24,7 +24,7 @@ inline constexpr LimitationKind lost_detail{"lost_detail",
                                             "detail finer than a froxel is lost: froxels are {} m wide, voxels {} m"};
 inline constexpr LimitationKind few_far_slices{"few_far_slices", "fog behind the scene gets only a few long slices"};
 inline constexpr LimitationKind coarse_glow{
-    "coarse_glow", "fog glows within {} degrees of it, and froxels are {} degrees across: the glow is blurred"};
+    "coarse_glow", "its glow or halo in fog is {} degrees wide, and froxels are {} degrees across: it is blurred"};
 inline constexpr LimitationKind coarse_alpha_shadows{
     "coarse_alpha_shadows",
     "shadows of MASK and BLEND surfaces are no finer than froxels: each froxel averages eight or more shadow rays"};

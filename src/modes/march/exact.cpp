@@ -183,6 +183,20 @@ template<class Add> void visit_nodes(const LightAlong& along, double low, double
     }
 }
 
+// split(), at narrow phase lobes as well.
+template<class Visit>
+void split_at_lobes(const RayMarch& on, size_t piece, double low, double high, const LightAlong& along,
+                    const Visit& visit) {
+    const LobeCuts& lobe = on.frame.lobe;
+    for (int i = 0; i < lobe.count && along.local(); ++i) {
+        const double cut = along.nearest + along.distance * double{lobe.slopes[i]};
+        if (!(cut > low && cut < high)) continue;
+        split(on, piece, low, cut, &along, visit);
+        low = cut;
+    }
+    split(on, piece, low, high, &along, visit);
+}
+
 // Light of scratch.along along the ray: over the lit segments, by pieces of fog.
 dvec3 light_along_ray(RayMarch& on, size_t light_index) {
     const FogPieces& fog = on.scratch.fog;
@@ -210,7 +224,7 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
         for (; piece < fog.pieces.size() && fog.pieces[piece].low < lit.high; ++piece) {
             const double low = std::max(fog.pieces[piece].low, lit.low);
             const double high = std::min(fog.pieces[piece].high, lit.high);
-            split(on, piece, low, high, &along, [&](double from, double to) {
+            split_at_lobes(on, piece, low, high, along, [&](double from, double to) {
                 visit_nodes(along, from, to,
                             [&, part = share](double t, double weight) { add(piece, t, part * weight); });
             });

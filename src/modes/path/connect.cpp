@@ -69,7 +69,7 @@ void find_visibility(const PathTracer& tracer, std::span<const Connection> conne
         const Connection& c = connections[i];
         shares[i] = 1;
         if (!c.shadows || !(max_component(c.light) > 0)) continue;
-        rays.set(i, {off_surface(c.point, c.face_normal, c.shadow), c.shadow, c.shadow_length});
+        rays.set(i, off_surface(c.face_normal, {c.point, c.shadow, c.shadow_length}));
         any = true;
     }
     if (any) trace_shadows(tracer.snapshot, connections, rays, shares);

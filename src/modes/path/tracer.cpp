@@ -80,11 +80,11 @@ void bounce(const PathState& state, const Segment& line, const SurfacePoint& sur
     const vec2 u = line.numbers(use_bounce);
     const float cosine = std::sqrt(std::max(0.0f, 1 - u.x));
     const vec3 direction = cosine_direction(surface.normal, u);
-    const vec3 origin = off_surface(surface.position, surface.face_normal, direction);
+    const Ray ray = off_surface(surface.face_normal, {surface.position, direction});
     const bool finds_sky =
         state.tracer.finds_sky && is_lit(*state.snapshot.environment, state.snapshot, surface.instance);
     const float sky_scale = finds_sky ? state.snapshot.environment->surface_scale : 0;
-    scatter(state, line, {{origin, direction}, surface.base_color, cosine / pi, sky_scale}, line.vertex.in_fog);
+    scatter(state, line, {ray, surface.base_color, cosine / pi, sky_scale}, line.vertex.in_fog);
 }
 
 // Ambient light, and the environment's with its MIS weight against light sampling (balance heuristic).

@@ -1,6 +1,7 @@
 #include "render/frame/sums.h"
 
 #include "base/error.h"
+#include "render/frame/camera_paths.h"
 #include "render/frame/pixel_sum.h"
 #include "trace/view.h"
 
@@ -157,6 +158,7 @@ void render_grouped_tile(const FrameTask& task, const PixelTile& tile, Layers& l
     const size_t stride = work.stride();
     std::vector<std::vector<float>> sums;
     for (int i = 0; i < work.sections; ++i) sums.push_back(node_sums(work, {i, root_level(work.leaves), 0}));
+    if (has_center_depths(task.tracer)) center_depths(task.tracer, {tile.pixels, tile.count}, work.depth);
 
     std::vector<float> of_pixel(sums.size() * stride);
     for (size_t i = 0; i < tile.count; ++i) {

@@ -92,7 +92,6 @@ std::vector<std::string> drop_absent_layers(const Scene& scene, const RenderPlan
         return std::ranges::any_of(color.values, [](vec3 value) { return value != vec3(0); });
     };
     const bool surfaces_glow =
-        plan.mode->surfaces == Surfaces::own &&
         std::ranges::any_of(scene.materials, [](const Material& material) { return material.emission != vec3(0); });
     const bool fog_glows = std::ranges::any_of(scene.media, emits_light);
     const auto has = [&](std::string_view layer) {

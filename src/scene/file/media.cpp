@@ -138,8 +138,8 @@ MediumSource medium_source(const Field& field, size_t index, Scene& scene) {
     const dvec3 in_bounds = analytic && !moved ? scene.origin : dvec3(0);
     read_bounds(field, in_bounds, medium);
     read_transform(field, scene.origin - in_bounds, medium);
-    if (const Field base = field.member("base")) medium.height_base = keyed_number(base);
-    for (float& base : medium.height_base.values) base = static_cast<float>(double{base} - scene.origin.y);
+    const Field base = field.member("base");
+    medium.height_base = base ? keyed_height(base, scene.origin.y) : Keyed<float>(static_cast<float>(-scene.origin.y));
     if (const Field falloff = field.member("falloff")) medium.height_falloff = keyed_number(falloff);
     return medium;
 }

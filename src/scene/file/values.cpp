@@ -78,6 +78,9 @@ vec3 read_color(const Field& field) {
 
 Keyed<float> keyed_number(const Field& field) { return keyed<float>(field, read_number); }
 Keyed<float> keyed_degrees(const Field& field) { return keyed<float>(field, read_degrees); }
+Keyed<float> keyed_height(const Field& field, double origin) {
+    return keyed<float>(field, [&](const Field& height) { return static_cast<float>(height.json->number - origin); });
+}
 Keyed<vec3> keyed_vector(const Field& field) { return keyed<vec3>(field, read_vector); }
 Keyed<vec3> keyed_position(const Field& field, dvec3 origin) {
     return keyed<vec3>(field, [&](const Field& location) { return vec3(read_position(location) - origin); });

@@ -27,9 +27,10 @@ vec3 read_color(const Field& field);     // [r, g, b], or one number for all thr
 inline float read_degrees(const Field& field) { return glm::radians(read_number(field)); }
 
 Keyed<float> keyed_number(const Field& field);
-Keyed<float> keyed_degrees(const Field& field); // to radians
+Keyed<float> keyed_degrees(const Field& field);               // to radians
+Keyed<float> keyed_height(const Field& field, double origin); // relative to an origin
 Keyed<vec3> keyed_vector(const Field& field);
-Keyed<vec3> keyed_position(const Field& field, dvec3 origin); // relative to an origin
+Keyed<vec3> keyed_position(const Field& field, dvec3 origin); // likewise
 Keyed<vec3> keyed_color(const Field& field);
 
 // From degrees about X, then Y, then Z. Rotations between keys are split into small steps, so that turns of more than

@@ -199,7 +199,6 @@ int gltf_material(GltfDocument& document, int index, int& uv_set) {
     if (source.alphaMode == "MASK") material.alpha_mode = AlphaMode::mask;
     if (source.alphaMode == "BLEND") material.alpha_mode = AlphaMode::blend;
     material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
-    material.double_sided = source.doubleSided;
     document.scene->materials.push_back(material);
     return known->second;
 }

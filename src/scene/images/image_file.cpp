@@ -99,13 +99,28 @@ Image<vec3> decode_openexr(std::string_view bytes, std::string_view where, std::
 
 bool holds_floats(ImageFormat format) { return format == ImageFormat::radiance || format == ImageFormat::openexr; }
 
+void add_note(std::string& note, const std::string& more) { note += (note.empty() ? "" : "; ") + more; }
+
+// A sun beyond the largest half float is infinite in files of halves; it is read as that or as the brightest other
+// value.
+void cut_infinite(Image<vec3>& image, std::string& note) {
+    float largest = 65504;
+    size_t infinite = 0;
+    for (const vec3& pixel : image.pixels)
+        for (int c = 0; c < 3; ++c)
+            if (std::isfinite(pixel[c])) largest = std::max(largest, pixel[c]);
+    for (vec3& pixel : image.pixels)
+        if (glm::any(glm::equal(pixel, vec3(infinity)))) pixel = glm::min(pixel, vec3(largest)), ++infinite;
+    if (infinite > 0) add_note(note, count_text(infinite, "infinite pixel") + ", read as " + shortest_text(largest));
+}
+
 void check_finite(const Image<vec3>& image, std::string_view where) {
     const auto broken = [](const vec3& pixel) { return !is_finite(pixel); };
     const auto first = std::ranges::find_if(image.pixels, broken);
     if (first == image.pixels.end()) return;
     const auto index = static_cast<int>(first - image.pixels.begin());
     const auto count = static_cast<size_t>(std::count_if(first, image.pixels.end(), broken));
-    refuse(where, count_text(count, "pixel") + (count == 1 ? " is" : " are") + " not finite (inf or NaN), " +
+    refuse(where, count_text(count, "pixel") + (count == 1 ? " is" : " are") + " not finite (-inf or NaN), " +
                       (count == 1 ? "" : "the first one ") + "at x " + std::to_string(index % image.size.x) + ", y " +
                       std::to_string(index / image.size.x) +
                       " from the upper left; give them a value, for example with oiiotool --fixnan box3");
@@ -114,6 +129,7 @@ void check_finite(const Image<vec3>& image, std::string_view where) {
 Image<vec3> decode_floats(std::string_view bytes, std::string_view where, std::string& note) {
     Image<vec3> image = image_format(bytes) == ImageFormat::radiance ? decode_radiance(bytes, where, note)
                                                                      : decode_openexr(bytes, where, note);
+    cut_infinite(image, note);
     check_finite(image, where);
     return image;
 }
@@ -162,11 +178,9 @@ Image<vec3> decode_image(std::string_view bytes, std::string_view where, std::st
         size_t negative = 0;
         for (vec3& pixel : image.pixels)
             if (glm::any(glm::lessThan(pixel, vec3(0)))) pixel = glm::max(pixel, vec3(0)), ++negative;
-        if (negative > 0)
-            note += (note.empty() ? "" : "; ") + std::to_string(negative) +
-                    " pixels with negative values, which are set to 0";
+        if (negative > 0) add_note(note, count_text(negative, "pixel") + " with negative values, set to 0");
         if (std::ranges::all_of(image.pixels, [](vec3 pixel) { return pixel == vec3(0); }))
-            note += std::string(note.empty() ? "" : "; ") + "the image is black";
+            add_note(note, "the image is black");
         return image;
     }
     const Image<vec4> texels = decode_texture(bytes, where);

@@ -10,11 +10,6 @@ namespace tyndall {
 namespace {
 constexpr int lowest = -126, highest = 127; // exponents of normal floats
 
-double voxels_in(const Tile& tile) {
-    const dvec3 size(dvec3(tile.high) - dvec3(tile.low) + 1.0);
-    return size.x * size.y * size.z;
-}
-
 // Calls `visit` with each positive density and how many voxels have it.
 template<class Visit> void visit_densities(const SparseVolume& volume, const Visit& visit) {
     for (const Leaf& leaf : volume.leaves)

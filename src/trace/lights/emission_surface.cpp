@@ -20,7 +20,7 @@ struct EmittedRays {
     void set(size_t i, const SurfacePoint& point, vec3 direction, float length, vec3 sent) {
         if (!(max_component(sent) > 0)) return;
         light[i] = sent;
-        rays.set(i, {off_surface(point.position, point.face_normal, direction), direction, length});
+        rays.set(i, off_surface(point.face_normal, {point.position, direction, length}));
     }
 };
 

@@ -25,8 +25,7 @@ void add_visible(const Snapshot& snapshot, std::span<const SurfacePoint> points,
     std::fill_n(visibility, 16, 1.0f);
     for (size_t i = 0; i < points.size(); ++i)
         if (max_component(sky.light[i]) > 0)
-            rays.set(i, {off_surface(points[i].position, points[i].face_normal, sky.direction[i]), sky.direction[i],
-                         infinity});
+            rays.set(i, off_surface(points[i].face_normal, {points[i].position, sky.direction[i], infinity}));
     if (const auto& casters = shadow_casters(*snapshot.environment, snapshot)) casters->transmission(rays, visibility);
     for (size_t i = 0; i < points.size(); ++i) {
         if (!rays.active[i] || !(visibility[i] > 0)) continue;

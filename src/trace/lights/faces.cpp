@@ -41,8 +41,7 @@ void aim(const Snapshot& snapshot, const Light& light, std::span<const SurfacePo
         const AreaSample sample = sample_area(*light.area, point.position, u[i * count + k]);
         const float cosine = glm::dot(point.normal, sample.direction);
         if (!(cosine > 0) || !(sample.steradians > 0)) continue;
-        const vec3 from = off_surface(point.position, point.face_normal, sample.direction);
-        to.rays.set(i, {from, sample.direction, sample.distance * 0.9999f});
+        to.rays.set(i, off_surface(point.face_normal, {point.position, sample.direction, sample.distance * 0.9999f}));
         const vec3 picture = face_texture(*light.area, point.position + sample.distance * sample.direction);
         to.light[i] = radiance * (sample.steradians * cosine) * picture;
     }

@@ -7,6 +7,16 @@
 #include <span>
 
 namespace tyndall {
+Ray off_surface(vec3 face_normal, const Ray& ray) {
+    const float side = glm::dot(face_normal, ray.direction) < 0 ? -1.0f : 1.0f, offset = shadow_offset(ray.origin);
+    const vec3 step = face_normal * (side * offset);
+    if (std::isinf(ray.t_max) || step == vec3(0)) return {ray.origin + step, ray.direction, ray.t_max};
+    const vec3 rest = ray.direction * ray.t_max - step;
+    const float length = glm::length(rest);
+    if (length <= 2 * offset) return {ray.origin + step, ray.direction, 0};
+    return {ray.origin + step, rest / length, length - std::max(offset - 1e-4f * length, 0.0f)};
+}
+
 namespace {
 bool has_triangles(const Scene& scene, const Instance& instance) {
     return instance.mesh >= 0 && !scene.meshes[instance.mesh].triangles.empty();

@@ -45,11 +45,9 @@ void set_embree_isa(std::string_view isa);
 // How far a ray must start from a surface at `position` to miss it: 32 ulps of the largest coordinate.
 inline float shadow_offset(vec3 position) { return 4e-6f * std::max(max_component(glm::abs(position)), 1e-5f); }
 
-// Origin of a ray that leaves a surface: off the face, on the side the ray goes to.
-inline vec3 off_surface(vec3 position, vec3 face_normal, vec3 direction) {
-    const float side = glm::dot(face_normal, direction) < 0 ? -1.0f : 1.0f;
-    return position + face_normal * (side * shadow_offset(position));
-}
+// A ray that leaves a surface: it starts off the face, on the side it goes to, and ends where the given one does, short
+// of any surface there.
+Ray off_surface(vec3 face_normal, const Ray& ray);
 
 class Occluders {
 public:

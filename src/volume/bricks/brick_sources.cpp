@@ -42,9 +42,8 @@ void sum_up(const SparseVolume& volume, Sources& sources) {
     for (size_t i = 0; i < volume.tiles.size(); ++i) {
         if (sources.tiles[i] == 0) continue;
         const Tile& tile = volume.tiles[i];
-        const dvec3 size(dvec3(tile.high) - dvec3(tile.low) + 1.0);
         sources.box.grow({tile.low, tile.high});
-        sources.mass += size.x * size.y * size.z * std::min(tile.value, largest_half);
+        sources.mass += voxels_in(tile) * std::min(tile.value, largest_half);
     }
 }
 

@@ -30,10 +30,7 @@ struct BrickArrays {
 // Voxels in leaves and tiles.
 double voxels_stored(const SparseVolume& volume) {
     double voxels = 512.0 * static_cast<double>(volume.leaves.size());
-    for (const Tile& tile : volume.tiles) {
-        const dvec3 size(tile.high - tile.low + 1);
-        voxels += size.x * size.y * size.z;
-    }
+    for (const Tile& tile : volume.tiles) voxels += voxels_in(tile);
     return voxels;
 }
 

@@ -25,6 +25,11 @@ struct Tile {
     float value = 0;
 };
 
+inline double voxels_in(const Tile& tile) {
+    const dvec3 size = dvec3(tile.high) - dvec3(tile.low) + 1.0;
+    return size.x * size.y * size.z;
+}
+
 struct SparseVolume {
     std::string name = "density";
     dmat4 index_to_world{1};

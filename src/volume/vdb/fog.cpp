@@ -21,10 +21,7 @@ bool contains(const ActiveBox& box, ivec3 low, ivec3 high) {
     return glm::all(glm::lessThanEqual(box.low, low)) && glm::all(glm::lessThanEqual(high, box.high));
 }
 
-uint64_t voxel_count(const Tile& tile) {
-    const ivec3 size = tile.high - tile.low + 1;
-    return static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y) * static_cast<uint64_t>(size.z);
-}
+uint64_t voxel_count(const Tile& tile) { return static_cast<uint64_t>(voxels_in(tile)); }
 
 struct Corrections {
     uint64_t non_finite = 0, negative = 0;

@@ -65,6 +65,16 @@ class PartsTest(ProgramTest):
                 with self.subTest(mode=mode["name"], parts=count):
                     self.assertEqual(read_channels(self.path("merged.exr")), one)
 
+    def test_depths_are_those_of_plain_render_with_a_lens(self):
+        camera = {"position": [0, 0.3, 3], "target": [0, 0.2, 0], "aperture_radius": 0.3, "focus_distance": 1}
+        self.scene = self.write("lens.json", lit_scene(gltf="panes.gltf", camera=camera, media=[fog()], resolution=[70, 37]))
+        plan = self.plan("--samples", 4, "--groups", 2, "--aov", "Z", "--float")
+        one = self.one_run(plan)["Z"]
+        self.merge(self.parts(plan, 2))
+        self.succeed("render", self.scene, "-o", self.path("plain.exr"), "--float", "--samples", 4, "--aov", "Z", "-q")
+        for other in ("merged.exr", "plain.exr"):
+            self.assertEqual(read_channels(self.path(other))["Z"], one, other)
+
     def test_more_parts_than_leaves_share_them_block_by_block(self):
         plan = self.plan("--samples", 2, "--orders", "all", "--aov", ALL_LAYERS, "--float")
         one = self.one_run(plan)

@@ -76,7 +76,7 @@ class Grids(ProgramTest):
                   "blackbody": {"convention": "kelvin"}}
         look = self.write("scene.json", scene(frames="1", media=[medium]))
         for mode, ids in {"march": {"out_of_gamut"}, "path": {"out_of_gamut"}, "cone": {"mean_emission_color", "mean_albedo", "lamps_for_fire"},
-                          "shadow-map": {"mean_albedo", "lamps_for_fire"}, "radial-blur": {"emission_left_out"}}.items():
+                          "shadow-map": {"mean_albedo", "lamps_for_fire"}, "radial-blur": {"fire_left_out"}}.items():
             self.succeed("render", look, "-o", self.path("a.exr"), "--res", "16x9", "--samples", "1", "--mode", mode, "--stats-json",
                          self.path("stats.json"))
             found = {one["id"] for one in json.loads(self.path("stats.json").read_text())["limitations"]}

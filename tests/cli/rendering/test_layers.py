@@ -80,6 +80,15 @@ class Layers(LayersTest):
         for layer in [*parts, "surface", "background", "inscatter"]:
             self.assertGreater(max(channels[f"{layer}.G"]), 0, layer)
 
+    def test_light_of_meshes_has_a_layer_where_nothing_else_glows(self):
+        scene = self.write("glow.json", lit_scene(gltf="panes.gltf", media=[fog(emission=[0, 0, 0])]))
+        for mode in ("march", "froxel", "shadow-map", "shadow-volume", "cone", "path"):
+            self.render(scene, "glow.exr", "--float", "--mode", mode)
+            with self.subTest(mode=mode):
+                channels, parts = self.check_exact("glow.exr")
+                self.assertIn("emission", parts)
+                self.assertGreater(max(channels["emission.G"]), 0)
+
     def test_they_add_up_in_scenes_that_ship(self):
         for scene in ("spotlight", "pillars"):
             self.check_all_modes(SOURCE / f"scenes/{scene}.json", "--res", "48x27", "--quality", "draft")

@@ -33,6 +33,16 @@ TEST(Origin, PlacesKeepTheirDigitsFarOut) {
     EXPECT_EQ(scene.media[1].height_base.at(0), 2);
 }
 
+TEST(Origin, HeightsKeepTheirDigitsFarUp) {
+    const TempFolder folder;
+    const Scene scene =
+        load_scene_text(R"({"tyndall": 1, "camera": {"position": [0, 10000002, 5], "target": [0, 10000001, 0]},
+        "media": [{"type": "height", "extinction": 1, "base": 10000000.2, "falloff": 0.6}]})",
+                        folder / "scene.json");
+    ASSERT_GT(scene.origin.y, 9e6);
+    EXPECT_NEAR(double{scene.media[0].height_base.at(0)} + scene.origin.y, 10000000.2, 1e-6);
+}
+
 TEST(Origin, NodesAreComposedInDouble) {
     Scene scene;
     Node root, child;

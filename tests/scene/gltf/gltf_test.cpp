@@ -296,7 +296,6 @@ TEST(Gltf, MaterialsAndTextures) {
     EXPECT_EQ(glass.base_color, vec3(0.5f, 0.25f, 1));
     EXPECT_EQ(glass.alpha, 0.75f);
     EXPECT_EQ(glass.alpha_mode, AlphaMode::blend);
-    EXPECT_TRUE(glass.double_sided);
     EXPECT_EQ(scene.meshes[0].uvs[0], vec2(5, 5)) << "the set its texture asks for";
     const Texture& texture = scene.textures[glass.base_texture];
     EXPECT_FALSE(texture.repeat_u);

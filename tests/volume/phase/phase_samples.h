@@ -13,6 +13,11 @@ struct NamedPhase {
     Phase phase;
 };
 
+inline Phase tabulated(const std::vector<PhaseEntry>& entries) {
+    PhaseTableNotes notes;
+    return table_phase(PhaseKind::table, make_table(std::span<const PhaseEntry>(entries), notes));
+}
+
 // A table of Henyey and Greenstein's form, with a bow at 138 degrees.
 inline Phase tabulated_bow(double g) {
     std::vector<PhaseEntry> entries;
@@ -21,8 +26,7 @@ inline Phase tabulated_bow(double g) {
         const double bow = 0.3 * std::exp(-std::pow((angle - 138) / 1.5, 2));
         entries.push_back({angle, (1 - g * g) / std::pow(1 + g * g - 2 * g * c, 1.5) + bow});
     }
-    PhaseTableNotes notes;
-    return table_phase(PhaseKind::table, make_table(std::span<const PhaseEntry>(entries), notes));
+    return tabulated(entries);
 }
 
 inline Phase legendre_of(double g, int degree) {
