@@ -1,13 +1,14 @@
 #include "modes/area_light_limitations.h"
 
+#include "base/random.h"
 #include "integrate/lights/fire_lamps.h"
 #include "integrate/lights/mesh_lamps.h"
-#include "integrate/lights/path_lights.h"
-#include "integrate/terms.h"
+#include "modes/mean_environment.h"
 #include "modes/shared_limitations.h"
 #include "scene/area_shape.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "trace/lights/emissive_bricks.h"
 #include "trace/lights/environment.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -15,7 +16,6 @@
 #include "volume/bricks/bricks.h"
 #include "volume/emission/blackbody.h"
 #include "volume/emission/emission_field.h"
-#include "volume/rays/fog_reach.h"
 
 #include <algorithm>
 #include <optional>
@@ -78,73 +78,12 @@ double nits_in_fog(const Snapshot& snapshot) {
     if (!snapshot.environment || !has_scattering_fog(snapshot)) return 0;
     return double(luminance(snapshot.environment->mean())) * snapshot.environment->volume_scale;
 }
-
-// Environment light scattered by fog, as in a march with 16 light samples per ray.
-ScatterFunction scattered_sky(const View& view, const Snapshot& snapshot) {
-    TermSettings terms;
-    terms.light_points = 16;
-    const auto fog = scattering_fog(snapshot, {}, terms, view.camera, 0);
-    std::vector<PathLight> lights;
-    append_environment_light(snapshot, fog, true, lights);
-    return with_path_lights(fog, std::move(lights),
-                            [](const RayBatch&, std::span<Scatter> results) { std::ranges::fill(results, Scatter{}); });
-}
-
-// The same for the environment's mean radiance, unattenuated: opacity of the ray times mean albedo along it.
-dvec3 scattered_mean(const Snapshot& snapshot, const Ray& ray) {
-    constexpr int points = 16;
-    dvec3 scattered(0);
-    double dimmed = 0;
-    for (int i = 0; i < points; ++i)
-        for (const Medium& medium : snapshot.media) {
-            const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
-            const double extinction = double(density_at(medium, point)) * gray_extinction(medium.optics);
-            scattered += extinction * dvec3(albedo_at(medium.optics, point)), dimmed += extinction;
-        }
-    if (!(dimmed > 0)) return dvec3(0);
-    const double opacity = -std::expm1(-optical_depth(snapshot.media, ray));
-    return scattered / dimmed * opacity * dvec3(snapshot.environment->mean()) *
-           double{snapshot.environment->volume_scale};
-}
-
-// Those of a grid of camera rays, up to the first surface, that meet scattering fog.
-std::vector<Ray> rays_in_fog(const View& view, const Snapshot& snapshot, uint32_t across, uint32_t down) {
-    std::vector<Ray> rays;
-    for (uint32_t i = 0; i < across * down; ++i) {
-        const vec2 at = (vec2(i % across, i / across) + 0.5f) / vec2(across, down);
-        Ray ray = camera_ray(view.camera, view.size, at * vec2(view.size));
-        ray.t_max = std::min(fog_reach(snapshot.media, ray), view.camera.far);
-        Hits hits;
-        if (snapshot.occluders)
-            snapshot.occluders->closest({&ray, 1}, 0, hits), ray.t_max = std::min(ray.t_max, hits.t[0]);
-        if (ray.t_max > 0 && optical_depth(snapshot.media, ray) > 0) rays.push_back(ray);
-    }
-    return rays;
-}
-
-// Relative RMS error of the mean (rmse_rel), over 8×6 camera rays, or more of a finer grid where few of them meet fog.
-double off_by_mean(const View& view, const Snapshot& snapshot) {
-    constexpr size_t enough = 12;
-    uint32_t across = 8, down = 6;
-    std::vector<Ray> rays = rays_in_fog(view, snapshot, across, down);
-    for (; rays.size() < enough && across < 128; rays = rays_in_fog(view, snapshot, across, down))
-        across *= 2, down *= 2;
-    const ScatterFunction exact = scattered_sky(view, snapshot);
-    double squares = 0, sum = 0;
-    for (uint32_t i = 0; i < rays.size(); ++i) {
-        Scatter found;
-        exact({.rays = {&rays[i], 1}, .ids = {&i, 1}}, {&found, 1});
-        const dvec3 off = scattered_mean(snapshot, rays[i]) - dvec3(found.radiance);
-        squares += glm::dot(off, off), sum += found.radiance.x + found.radiance.y + found.radiance.z;
-    }
-    return sum > 0 ? std::sqrt(3 * squares * across * down) / sum : 0;
-}
 }
 
 void add_mean_environment(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     const double nits = nits_in_fog(snapshot);
     if (!(nits > 0)) return;
-    const double off = off_by_mean(view, snapshot);
+    const double off = mean_environment_error(view, snapshot);
     limitations.push_back({off > wrong_error     ? Severity::wrong
                            : off > visible_error ? Severity::degraded
                                                  : Severity::info,
@@ -219,6 +158,33 @@ void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations
         }
 }
 
+namespace {
+// Relative error of the light that leaves a fire's own smoke when lamps inside stand for the fire: RMS over the axes.
+double error_behind_smoke(const Snapshot& snapshot, std::span<const Light> lamps) {
+    constexpr uint32_t points = 128;
+    const auto fire = emissive_bricks(snapshot);
+    if (!fire) return 0;
+    double squares = 0, sum = 0;
+    for (const vec3& direction :
+         {vec3(1, 0, 0), vec3(-1, 0, 0), vec3(0, 1, 0), vec3(0, -1, 0), vec3(0, 0, 1), vec3(0, 0, -1)}) {
+        // Powers times transmittance, and powers alone.
+        glm::dvec2 exact(0), approximate(0);
+        const auto add = [&](vec3 position, double power, glm::dvec2& to) {
+            to += power * glm::dvec2(std::exp(-optical_depth(snapshot.media, {position, direction, infinity})), 1);
+        };
+        for (uint32_t i = 0; i < points; ++i) {
+            const Sample2 a = sample2(i, 1), b = sample2(i, 2);
+            const EmissionSample at = sample_emission(*fire, a.x, {a.y, b.x, b.y});
+            if (at.density > 0) add(at.position, luminance(at.emission) / at.density, exact);
+        }
+        for (const Light& lamp : lamps) add(lamp.position, luminance(lamp.intensity), approximate);
+        const double leaves = exact.x / std::max(exact.y, 1e-300), off = approximate.x / approximate.y - leaves;
+        squares += off * off, sum += leaves;
+    }
+    return sum > 0 ? std::sqrt(6 * squares) / sum : 0;
+}
+}
+
 void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
     constexpr double tolerated = 0.1;
     if (!has_scattering_fog(snapshot)) return;
@@ -230,6 +196,8 @@ void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
         reach = std::max(reach, within);
         if (ends_within(snapshot, lamp.position, within)) severity = Severity::wrong;
     }
+    if (error_behind_smoke(snapshot, lamps) > tolerated)
+        reach = std::max(reach, double{snapshot.extent}), severity = Severity::wrong;
     for (const Medium& medium : snapshot.media)
         if (!lamps.empty() && has_emission(medium) && only_emits(medium.optics))
             limitations.push_back(

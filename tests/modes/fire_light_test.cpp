@@ -196,6 +196,19 @@ TEST(FireLight, FarEnoughIsWhereABallIsOffBySoMuch) {
     EXPECT_NEAR(sum / weight * d * d - 1, 0.02, 0.002);
 }
 
+// Light leaves thick smoke from its outside, lamps would shine from its middle.
+TEST(FireLight, FireInItsOwnSmokeIsWrongAtAnyDistance) {
+    const auto reach = [](float extinction) {
+        const Medium smoke = homogeneous_medium(extinction, {vec3(-0.7f, -0.2f, -0.7f), vec3(0.7f, 1.2f, 0.7f)});
+        const Snapshot snapshot = snapshot_of({smoke, glowing_ball({0, 0.5f, 0})}, {});
+        for (const Limitation& one : find_mode("froxel").limitations(View{}, snapshot, {}))
+            if (one.is(limitation::lamps_for_fire)) return one.amounts[0] / double{snapshot.extent};
+        return -1.0;
+    };
+    EXPECT_LT(reach(0.1f), 0.5);
+    EXPECT_GE(reach(20), 1);
+}
+
 // Emission that follows the density lights nothing outside path, and nothing of it or of ambient light is drawn by
 // cards.
 TEST(FireLight, GlowingFogAndAmbientLightThatAreLeftOutAreSaid) {
