@@ -53,11 +53,12 @@ struct AngularTable {
         return worst;
     }
 
-    // The entry with the sharpest bend between two others.
+    // The entry with the sharpest bend between two others, and not just beside them: a bend falls on two entries.
     size_t sharpest(size_t low, size_t high) const {
+        const size_t margin = 1 + (high - low) / 64;
         size_t found = low + 1;
         double most = 0;
-        for (size_t i = low + 1; i < high; ++i)
+        for (size_t i = low + margin; i + margin <= high; ++i)
             if (const double bend = std::abs(slope(i) - slope(i - 1)); bend > most) most = bend, found = i;
         return found;
     }
@@ -119,16 +120,20 @@ void add_angles(float width, std::vector<double>& angles) {
 }
 
 float narrowest_halo(const Medium& medium) {
-    float narrowest = pi;
-    std::vector<double> angles;
     const auto& shape = medium.optics.phase.shape;
-    if (shape && shape->lobes.empty()) add_angles(shape->table, angles);
-    std::ranges::sort(angles);
-    constexpr double aureole = 0.09;
-    for (size_t i = 0; i + 1 < angles.size(); ++i)
-        if (angles[i] > aureole && angles[i + 1] < double{pi} - aureole)
-            narrowest = std::min(narrowest, static_cast<float>(angles[i + 1] - angles[i]));
-    return narrowest;
+    if (!shape || !shape->lobes.empty()) return pi;
+    const std::vector<float>& values = shape->table.values;
+    const AngularTable table(shape->table);
+    double narrowest = pi;
+    for (size_t i = 1; i + 1 < values.size(); ++i) {
+        if (!(values[i] > values[i - 1] && values[i] >= values[i + 1])) continue;
+        size_t low = i, high = i;
+        while (low > 0 && values[low] > 0.5f * values[i]) --low;
+        while (high + 1 < values.size() && values[high] > 0.5f * values[i]) ++high;
+        if (std::max(values[low], values[high]) <= 0.5f * values[i])
+            narrowest = std::min(narrowest, table.angles[high] - table.angles[low]);
+    }
+    return static_cast<float>(narrowest);
 }
 
 LobeCuts lobe_cuts(std::span<const Medium> media) {

@@ -19,7 +19,7 @@ inline constexpr float wide_lobe = 0.3f; // 1 - |g| above which no cuts are need
 // Cuts for multi-lobe and tabulated phase functions; single lobes are handled through their g.
 LobeCuts lobe_cuts(std::span<const Medium> media);
 
-// Width in radians of the narrowest peak or bend of a medium's tabulated phase function, at more than 5 degrees from
-// the forward and backward directions; π for any other.
+// Width in radians, at half its height, of the narrowest peak of a tabulated phase function that is neither straight on
+// nor straight back; π if there is none.
 float narrowest_halo(const Medium& medium);
 }

@@ -142,6 +142,10 @@ TEST(PhaseKinds, FroxelsSayThatTheyBlurTheGlowOfASun) {
     EXPECT_FALSE(has_limitation(said(forward_phase(0.8f), view), limitation::coarse_glow));
     EXPECT_TRUE(has_limitation(said(peaked_phases()[0].phase, beside), limitation::coarse_glow)) << "a halo";
     EXPECT_FALSE(has_limitation(said(legendre_of(0.5, 20), beside), limitation::coarse_glow));
+    for (const Limitation& one : said(peaked_phases()[0].phase, beside))
+        if (one.is(limitation::coarse_glow)) {
+            EXPECT_NEAR(one.amounts[0], 1, 0.1);
+        }
     for (const Limitation& one : said(mie_phase(20), view))
         if (one.is(limitation::coarse_glow)) {
             EXPECT_NEAR(one.amounts[0], 0.77 * 0.00539 * 180 / std::numbers::pi, 0.01);
