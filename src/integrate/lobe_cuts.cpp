@@ -4,7 +4,7 @@
 #include "volume/medium.h"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <numbers>
 #include <vector>
 
@@ -146,6 +146,7 @@ LobeCuts lobe_cuts(std::span<const Medium> media) {
             width = std::min(width, 1 - shape->narrowest);
     add_angles(width, angles);
     std::ranges::sort(angles);
+    angles.erase(std::ranges::unique(angles).begin(), angles.end());
     LobeCuts cuts;
     for (const double angle : angles)
         if (cuts.count < static_cast<int>(std::size(cuts.slopes)))

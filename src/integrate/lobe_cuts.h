@@ -11,7 +11,7 @@ struct Medium;
 // Empty if all phase functions are smooth.
 struct LobeCuts {
     int count = 0;
-    float slopes[64] = {};
+    float slopes[128] = {};
 };
 
 inline constexpr float wide_lobe = 0.3f; // 1 - |g| above which no cuts are needed
