@@ -2,8 +2,8 @@
 
 #include "base/random.h"
 #include "integrate/lights/fire_lamps.h"
+#include "integrate/lights/mean_environment.h"
 #include "integrate/lights/mesh_lamps.h"
-#include "modes/mean_environment.h"
 #include "modes/shared_limitations.h"
 #include "scene/area_shape.h"
 #include "scene/light.h"

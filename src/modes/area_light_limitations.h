@@ -16,7 +16,8 @@ inline constexpr LimitationKind lamp_for_face{
 inline constexpr LimitationKind out_of_gamut{
     "out_of_gamut", "{}% of its light, below {n} K, is outside the Rec.709 gamut: clamped to the reddest color"};
 inline constexpr LimitationKind unscattered_emission{
-    "unscattered_emission", "its emission, at most {} nits, is visible but illuminates nothing (path includes that)"};
+    "unscattered_emission",
+    "its emission (at most {} nits) is visible but illuminates nothing; path includes its light"};
 inline constexpr LimitationKind lamps_for_fire{
     "lamps_for_fire", "its light in fog has an error above 10% within {} m of the {n} lamps that approximate it"};
 inline constexpr LimitationKind lamps_for_surfaces{

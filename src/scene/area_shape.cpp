@@ -216,7 +216,7 @@ double far_distance(const AreaShape& shape, double share) {
             const dvec3 direction(std::sin(polar) * std::cos(around), std::sin(polar) * std::sin(around),
                                   std::cos(polar));
             double low = size, high = 1e4 * size;
-            for (int i = 0; i < 40; ++i) {
+            for (int i = 0; i < 20; ++i) {
                 const double middle = std::sqrt(low * high);
                 (std::abs(lamp_error(shape, middle * direction)) > share ? low : high) = middle;
             }

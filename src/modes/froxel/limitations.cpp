@@ -52,7 +52,7 @@ Followed followed(const Light& light, const Snapshot& snapshot, const FroxelSett
     return {by_ray && (has_cone(light) || exact), exact && !(casters && casters->has_alpha())};
 }
 
-// Reports a sun whose glow, or a halo of which, is narrower than a froxel.
+// Reports a sun whose glow or halo is narrower than a froxel.
 void add_glow(const View& view, const Snapshot& snapshot, const Light& light, int tile, Limitations& limitations) {
     if (!is_distant(light)) return;
     const bool seen = shows_sun(view, snapshot, light);

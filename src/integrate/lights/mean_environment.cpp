@@ -1,4 +1,4 @@
-#include "modes/mean_environment.h"
+#include "integrate/lights/mean_environment.h"
 
 #include "integrate/lights/path_lights.h"
 #include "integrate/terms.h"
