@@ -48,7 +48,9 @@ View small_view(View view) {
 
 double task_seconds(const FarmJob& job, double setup, double samples, int threads) {
     const double frames = static_cast<double>(std::min(static_cast<size_t>(job.chunk), job.frames.size()));
-    return frames * (setup + samples / job.parts * threads / (job.cpus > 0 ? job.cpus : threads));
+    const int own = job.engine == "slurm" ? 1 : threads; // those of a task that does not ask for any
+    const double slower = static_cast<double>(threads) / (job.cpus > 0 ? job.cpus : own);
+    return frames * (std::max(slower, 1.0) * setup + slower * samples / job.parts);
 }
 
 TaskForecast forecast_task(const FarmJob& job, const Scene& scene, const RenderRequest& asked,

@@ -14,6 +14,7 @@ struct TaskForecast {
 };
 
 // Seconds of a task, from those of a frame to load and prepare (`setup`) and for all its samples on `threads` threads.
+// Fewer processors slow down both; more of them make only the samples faster, since loading is partly serial.
 double task_seconds(const FarmJob& job, double setup, double samples, int threads);
 
 // Measures the job's first frame, which it loads. Throws Error.
