@@ -19,8 +19,8 @@ std::string lower_extension(const std::filesystem::path& path);
 // Throws unless the path is a readable regular file; returns its size in bytes.
 uint64_t check_readable(const std::filesystem::path& path);
 
-// Writes a temporary file next to `path`, syncs it and renames it over `path`. On failure throws Error (unwritable) and
-// removes the temporary.
+// Writes a temporary file next to `path`, syncs it and renames it over `path`. Its directory is created if missing. On
+// failure throws Error (unwritable) and removes the temporary.
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::byte> bytes);
 void write_file_atomically(const std::filesystem::path& path, std::string_view text);
 void write_file_atomically(const std::filesystem::path& path, std::span<const std::string_view> pieces);

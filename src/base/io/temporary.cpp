@@ -90,9 +90,12 @@ bool parse_owner(std::string_view name, const std::string& host, Owner& owner) {
 
 Temporary::Temporary(const std::filesystem::path& path) : final_(path) {
     for (int attempt = 0; attempt < 16 && descriptor_ < 0; ++attempt) {
+        // The folder may be gone: a process that fails removes those it made, where others may be about to write.
+        std::error_code ignored;
+        if (attempt > 0) std::filesystem::create_directories(path.parent_path(), ignored);
         name_ = temporary_name(path);
         descriptor_ = open(name_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666);
-        if (descriptor_ < 0 && errno != EEXIST && errno != EINTR) break;
+        if (descriptor_ < 0 && errno != EEXIST && errno != EINTR && errno != ENOENT) break;
     }
     if (descriptor_ < 0) fail_with("cannot create a file in its directory");
     exists_ = true;

@@ -5,7 +5,8 @@
 
 namespace tyndall {
 // A file opened for writing under a unique name `.<name>.<host>.<pid namespace>-<pid>.<random>.tmp` in the directory of
-// `path`. Deleted on destruction unless it was renamed. Every step throws Error (unwritable) naming `path`.
+// `path`, which is created if it is missing. Deleted on destruction unless it was renamed. Every step throws Error
+// (unwritable) naming `path`.
 class Temporary {
 public:
     explicit Temporary(const std::filesystem::path& path);

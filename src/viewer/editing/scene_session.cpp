@@ -197,6 +197,8 @@ void save_as(SceneSession& session, const std::filesystem::path& file) {
     const auto folder = [](const std::filesystem::path& path) {
         return path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
     };
+    if (!std::filesystem::is_directory(folder(file)))
+        fail(ExitCode::unwritable, file.string(), "its folder does not exist");
     std::string base = rebase_paths(session.text, folder(old), folder(file));
     std::string text = edited_text(base, session.scene, active_edits(session));
     std::vector<InputFile> inputs = session.scene.inputs;
