@@ -51,7 +51,7 @@ Progress::Progress(ProgressStyle style, std::string_view what, double total, boo
         style_ = isatty(to_stderr_ ? STDERR_FILENO : STDOUT_FILENO) ? ProgressStyle::bar : ProgressStyle::alf;
         if (style_ == ProgressStyle::alf) to_stderr_ = to_stderr;
     }
-    start_ = last_print_ = steady_seconds();
+    start_ = work_start_ = last_print_ = steady_seconds();
     print(false);
 }
 
@@ -66,13 +66,32 @@ Progress::~Progress() {
 void Progress::set(double done) {
     const std::lock_guard lock(mutex_);
     if (finished_ || !(done > done_)) return; // also rejects NaN
-    done_ = std::min(done, total_);
+    done_ = std::min(done, total_ - skipped_);
+    print(false);
+}
+
+void Progress::skip(double units) {
+    const std::lock_guard lock(mutex_);
+    if (finished_) return;
+    skipped_ = std::min(skipped_ + units, total_ - done_);
+    if (done_ == 0) work_start_ = steady_seconds(); // looking for what to skip is no work
     print(false);
 }
 
 double Progress::share() const {
     const std::lock_guard lock(mutex_);
-    return total_ > 0 ? done_ / total_ : finished_ ? 1 : 0;
+    return total_ > 0 ? (done_ + skipped_) / total_ : finished_ ? 1 : 0;
+}
+
+double Progress::left() const {
+    const std::lock_guard lock(mutex_);
+    return unlocked_left();
+}
+
+double Progress::unlocked_left() const {
+    const double rest = total_ - skipped_ - done_;
+    if (rest <= 0) return 0;
+    return done_ > 0 ? (steady_seconds() - work_start_) * rest / done_ : -1;
 }
 
 void Progress::line(std::string_view text) {
@@ -94,7 +113,7 @@ void Progress::line(std::string_view text) {
 void Progress::finish() {
     const std::lock_guard lock(mutex_);
     if (finished_) return;
-    done_ = total_;
+    done_ = total_ - skipped_;
     print(true);
     finished_ = true;
     if (style_ != ProgressStyle::bar) return;
@@ -107,9 +126,9 @@ void Progress::print(bool last) {
     if (style_ == ProgressStyle::none || style_ == ProgressStyle::silent) return;
     const double now = steady_seconds();
     const double elapsed = now - start_, since = now - last_print_;
-    const double fraction = total_ > 0 ? done_ / total_ : last ? 1.0 : 0.0;
-    const double left = fraction > 0 ? elapsed * (1 - fraction) / fraction : -1;
-    const int percent = total_ > 0 ? static_cast<int>(100 * done_ / total_ + 1e-9) : last ? 100 : 0;
+    const double done = done_ + skipped_, left = unlocked_left();
+    const double fraction = total_ > 0 ? done / total_ : last ? 1.0 : 0.0;
+    const int percent = total_ > 0 ? static_cast<int>(100 * done / total_ + 1e-9) : last ? 100 : 0;
 
     // A bar updates at most ten times a second; lines are printed at every percent, and every minute as a heartbeat.
     const bool bar = style_ == ProgressStyle::bar;

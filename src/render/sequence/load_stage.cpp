@@ -76,7 +76,7 @@ std::optional<FrameJob> load_next(Pipeline& pipeline, const Snapshot* previous) 
             if (pipeline.request.resume && keep(pipeline, work)) {
                 work.report.load_seconds = steady_seconds() - start;
                 report_frame(pipeline, work);
-                pipeline.progress.set(++pipeline.settled);
+                pipeline.progress.skip(1);
                 continue;
             }
             work.report.load_seconds = steady_seconds() - start;

@@ -34,9 +34,8 @@ struct Pipeline {
     std::shared_ptr<FileHashes> files = first.files;
     size_t next = 0; // index of the next frame to load
     RenderReport report{};
-    std::mutex reporting{};       // protects the report
-    std::atomic<int> settled = 0; // frames rendered or kept
-    int rendered = 0;             // frames
+    std::mutex reporting{}; // protects the report
+    int rendered = 0;       // frames
 };
 
 // Loads the next frame that has to be rendered; reports the ones kept on the way.

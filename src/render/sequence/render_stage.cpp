@@ -110,7 +110,7 @@ void render(Pipeline& pipeline, FrameJob& work) {
     const RenderPlan& plan = pipeline.plan;
     const double start = steady_seconds();
     FrameOptions options{wants_layer(request, "halves"), nullptr, &pipeline.cancel, {}, {}};
-    options.progress = [&](double share) { pipeline.progress.set(pipeline.settled + share); };
+    options.progress = [&](double share) { pipeline.progress.set(pipeline.rendered + share); };
     FrameStats& stats = work.report.stats;
     try {
         History history;
@@ -139,7 +139,7 @@ void render(Pipeline& pipeline, FrameJob& work) {
     } catch (const Error& error) {
         fail_in_frame(work.report.frame, error);
     }
-    ++pipeline.settled, ++pipeline.rendered;
+    ++pipeline.rendered;
     work.report.seconds += steady_seconds() - start;
 }
 }

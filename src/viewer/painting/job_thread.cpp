@@ -1,6 +1,5 @@
 #include "viewer/painting/job_thread.h"
 
-#include "base/clock.h"
 #include "base/parallel.h"
 
 #include <utility>
@@ -17,7 +16,7 @@ void JobThread::start(FileJob job) {
     {
         const std::scoped_lock lock(mutex_);
         if (progress_) fail(ExitCode::usage, name_of(job), "one job at a time: wait for " + name_ + " or stop it");
-        name_ = name_of(job), frames_ = frame_count(job), start_ = steady_seconds();
+        name_ = name_of(job), frames_ = frame_count(job);
         progress_ = std::make_shared<Progress>(ProgressStyle::silent, name_, frames_);
         cancel_ = false;
     }
@@ -30,9 +29,7 @@ void JobThread::stop() { cancel_ = true; }
 std::optional<JobStatus> JobThread::status() const {
     const std::scoped_lock lock(mutex_);
     if (!progress_) return {};
-    const double share = progress_->share();
-    const double left = share > 0 ? (steady_seconds() - start_) * (1 - share) / share : -1;
-    return JobStatus{name_, frames_, share, left, cancel_};
+    return JobStatus{name_, frames_, progress_->share(), progress_->left(), cancel_};
 }
 
 std::optional<JobResult> JobThread::take_result() {

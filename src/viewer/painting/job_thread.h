@@ -32,7 +32,6 @@ private:
     std::shared_ptr<Progress> progress_;
     std::string name_;
     int frames_ = 0;
-    double start_ = 0;
     std::optional<JobResult> result_;
     std::atomic<bool> cancel_{false};
     std::thread thread_;

@@ -139,7 +139,8 @@ public:
     }
     void keep(const std::filesystem::path& file) {
         ++report_.kept;
-        done(file.filename().string() + ": kept");
+        progress_.line(file.filename().string() + ": kept");
+        progress_.skip(1);
     }
     void finish() {
         while (!pending_.empty()) finish_one();
@@ -151,12 +152,9 @@ private:
         pending_.pop_front();
         ++report_.written;
         report_.voxels += written.voxels, report_.bytes += written.bytes;
-        done(written.file.filename().string() +
-             formatted(": %.2f M voxels with fog, %.2f MB", written.voxels * 1e-6, written.bytes * 1e-6));
-    }
-    void done(const std::string& line) {
-        progress_.line(line);
-        progress_.set(report_.written + report_.kept);
+        progress_.line(written.file.filename().string() +
+                       formatted(": %.2f M voxels with fog, %.2f MB", written.voxels * 1e-6, written.bytes * 1e-6));
+        progress_.set(report_.written);
     }
 
     BakeReport& report_;

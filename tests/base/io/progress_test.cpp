@@ -1,3 +1,4 @@
+#include "base/clock.h"
 #include "base/io/progress.h"
 #include "base/json/json.h"
 
@@ -126,6 +127,26 @@ TEST(Progress, JsonLinesCanBeParsed) {
         EXPECT_EQ(line.find("left")->kind, i == 0 ? Json::Kind::null : Json::Kind::number);
     }
     EXPECT_EQ(parse_json(lines[2], "progress").number_or("left", -1), 0);
+}
+
+TEST(Progress, SkippedUnitsTookNoTimeAndNeedNone) {
+    const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(30)); };
+    Progress progress(ProgressStyle::silent, "render", 10);
+    EXPECT_LT(progress.left(), 0) << "unknown";
+    wait();
+    const double start = steady_seconds();
+    progress.skip(8);
+    EXPECT_EQ(progress.share(), 0.8);
+    EXPECT_LT(progress.left(), 0) << "still unknown";
+    wait();
+    progress.set(1);
+    EXPECT_EQ(progress.share(), 0.9);
+    const double left = progress.left();
+    EXPECT_GE(left, 0.03);
+    EXPECT_LE(left, steady_seconds() - start);
+    progress.skip(5); // more than there are
+    EXPECT_EQ(progress.share(), 1);
+    EXPECT_EQ(progress.left(), 0);
 }
 
 TEST(Progress, NoneIsSilentAndStderrKeepsStdoutFree) {

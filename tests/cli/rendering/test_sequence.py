@@ -121,6 +121,14 @@ class Resume(Sequence):
         self.assertEqual(self.content("fog"), before)
         self.assertEqual(counts(self.succeed(*self.bake(), "--resume", "--json", "--voxel-size", "0.05")), [3, 0])
 
+    def test_kept_files_say_nothing_of_the_time_left(self):
+        for command in (self.bake(), self.render("out")):
+            self.succeed(*command)
+            result = self.succeed(*command, "--resume", "--progress", "json")
+            lines = [json.loads(line) for line in result.stdout.splitlines()]
+            self.assertEqual([(round(line["progress"], 2), line["left"]) for line in lines],
+                             [(0, None), (0.33, None), (0.67, None), (1, 0)])
+
 
 class Bits(Sequence):
     def test_threads_and_ranges_do_not_matter(self):
