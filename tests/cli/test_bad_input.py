@@ -270,6 +270,8 @@ class Output(ProgramTest):
         self.refuse(5, ["file"], "bake", fog, "-o", self.path("file/fog.vdb"))
         self.refuse(5, ["file"], "render", self.scene, "-o", self.path("out.####.exr"), "--stats-json",
                     self.path("file/stats.json"))
+        for goal in [("--target-error", 0.1), ("--mode", "march", "--samples", 2)]:
+            self.refuse(5, ["file"], "plan", self.path("nothing.json"), *goal, "--save", self.path("file/plan.json"))
 
     def test_directories_are_made_and_removed_again(self):
         self.succeed("render", self.scene, "-o", self.path("a/b/out.####.exr"), "--frames", "1")
@@ -306,6 +308,21 @@ class Output(ProgramTest):
         fog = self.path("fog.vdb").read_bytes()
         self.refuse(2, [], "render", self.scene, "-o", self.path("fog.vdb"), "--frames", "1")
         self.assertEqual(self.path("fog.vdb").read_bytes(), fog)
+
+    def test_files_of_the_scene_are_never_written_over(self):
+        self.path("link").symlink_to(self.directory)
+        own = self.write("chart.json", scene())
+        before = own.read_bytes()
+        for command in [("plan", "--target-error", 0.1, "--save", own),
+                        ("plan", "--mode", "march", "--samples", 2, "--save", own),
+                        ("render", "-o", self.path("out.exr"), "--frames", 1, "--stats-json", self.path("link/chart.json")),
+                        ("chart", "-o", self.directory)]:
+            with self.subTest(command=command):
+                self.refuse(2, [own.name, "overwritten"], command[0], own, *command[1:])
+                self.assertEqual(own.read_bytes(), before)
+        plan = self.path("plan.json")
+        self.succeed("plan", self.scene, "--mode", "march", "--samples", 2, "--save", plan)
+        self.refuse(2, ["plan.json"], "render", "--plan", plan, "-o", self.path("out.####.exr"), "--stats-json", plan)
 
 
 @unittest.skipIf(SANITIZED, "sanitizers need the address space themselves")

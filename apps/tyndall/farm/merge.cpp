@@ -191,6 +191,8 @@ int run_merge(const Options& args, const Globals& globals) {
     }
     const Scene scene = load_scene(merge.plan.request.scene_file, {merge.plan.request.light_units});
     check_inputs(merge.plan, scene);
+    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    for (const std::string& part : names) places.spare(part);
 
     for (const auto& [frame, parts] : frames) {
         stop_if_cancelled();

@@ -124,7 +124,8 @@ void check_parts_of(const FarmJob& job, const Scene& scene) {
 void write_job(const FarmJob& job, const FarmFiles& files, const Options& args, const Scene& scene,
                const Globals& globals) {
     OutputPaths places;
-    places.check(job.folder / "job.json");
+    for (const char* name : {"job.json", "plan.json"}) places.check(job.folder / name);
+    for (const InputFile& input : scene.inputs) places.spare(input.path);
     if (!job.plan_for_each_frame) {
         Globals quiet = globals;
         quiet.quiet = true;

@@ -60,15 +60,6 @@ void check_outputs(const Options& args, OutputPaths& places) {
         check_pattern(args.csv, ".csv", false, "--csv"), places.check(std::filesystem::path(args.csv));
 }
 
-// Throws Error when an output would overwrite one of the scene's own files.
-void keep_inputs(const Options& args, const Scene& scene) {
-    for (const std::string& output : {args.svg, args.csv})
-        for (const InputFile& input : scene.inputs)
-            if (!output.empty() &&
-                std::filesystem::weakly_canonical(output) == std::filesystem::weakly_canonical(input.path))
-                fail(ExitCode::usage, output, "this file belongs to the scene and would be overwritten");
-}
-
 int run_explain(const Options& args, const Globals& globals) {
     const ivec2 pixel = pixel_option(args.pixel);
     RenderRequest request = make_request(args);
@@ -79,7 +70,7 @@ int run_explain(const Options& args, const Globals& globals) {
     check_outputs(args, places);
 
     const Scene scene = load_scene(args.scene);
-    keep_inputs(args, scene);
+    for (const InputFile& input : scene.inputs) places.spare(input.path);
     if (request.frames.empty()) request.frames = {scene.first_frame};
     const int frame = request.frames[0];
     find_camera(scene, request.camera);

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/io/frames.h"
+#include "base/io/output.h"
 #include "modes/mode.h"
 #include "render/adaptive/errors/orders.h"
 #include "render/adaptive/planned.h"
@@ -174,11 +175,20 @@ int groups_option(const Options& args) {
     return groups;
 }
 
+// The scene, once it is certain that the plan can be written and overwrites none of the scene's files.
+Scene load_to_plan(const Options& args, const RenderRequest& request, OutputPaths& places) {
+    if (!args.save.empty()) places.check(std::filesystem::path(args.save));
+    Scene scene = load_scene(request.scene_file, load_options(args.render));
+    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    find_camera(scene, request.camera);
+    return scene;
+}
+
 int save_as_asked(const Options& args, const Globals& globals) {
     const Mode& mode = find_mode(args.render.mode, "--mode");
     const RenderRequest request = make_request(args.render, mode);
-    const Scene scene = load_scene(request.scene_file, load_options(args.render));
-    find_camera(scene, request.camera);
+    OutputPaths places;
+    const Scene scene = load_to_plan(args, request, places);
     return save(args.save, scene, request, requested_plan(request), groups_option(args), globals);
 }
 
@@ -188,11 +198,10 @@ int run_plan(const Options& args, const Globals& globals) {
     if (!args.save.empty()) check_saved(args);
     if (args.render.mode != automatic) return save_as_asked(args, globals);
     RenderRequest request = make_request(args.render, main_mode());
-    const LoadOptions options = load_options(args.render);
-    const Scene scene = load_scene(request.scene_file, options);
+    OutputPaths places;
+    const Scene scene = load_to_plan(args, request, places);
     request.frames = {request.frames.empty() ? scene.first_frame : request.frames[0]};
     if (!args.frame.empty()) request.frames = {frame_option(args.frame)};
-    find_camera(scene, request.camera);
     if (scene.media.empty()) refuse(scene.file.string(), "has no fog to plan for");
     const Snapshot snapshot = load_first_frame(scene, request).snapshot;
 

@@ -222,7 +222,7 @@ void check_with_scene(const Scene& scene, const RenderOptions& args, std::vector
     };
     for (RenderRequest& request : requests) {
         choose_frames(scene, args.order, request);
-        places.check(request.output, request.frames);
+        check_outputs(scene, request, places);
         find_camera(scene, request.camera);
         check_crop(request, size_of(request));
         if (is_part(request.grouping))
@@ -233,6 +233,8 @@ void check_with_scene(const Scene& scene, const RenderOptions& args, std::vector
         check_sheet_reference(args.sheet_reference, requests[0].frames, size_of(requests[0]));
     if (requests.size() > 1)
         for (const int frame : requests[0].frames) places.check(std::filesystem::path(sheet_name(args, frame)));
+    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    if (!args.plan.empty()) places.spare(args.plan);
 }
 
 int run_render(const RenderOptions& args, const Globals& globals) {

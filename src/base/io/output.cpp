@@ -9,6 +9,15 @@
 namespace tyndall {
 namespace fs = std::filesystem;
 
+namespace {
+// The path without links and dots, as far as the file system can be read.
+fs::path plain_path(const fs::path& path) {
+    std::error_code error;
+    const fs::path plain = fs::weakly_canonical(path, error);
+    return error ? path : plain;
+}
+}
+
 void check_pattern(const std::string& pattern, std::string_view extension, bool several, std::string_view option) {
     const fs::path name = fs::path(pattern).filename();
     if (name.extension() != extension || name.stem().empty())
@@ -31,6 +40,7 @@ OutputPaths::~OutputPaths() {
 }
 
 void OutputPaths::check(const fs::path& file) {
+    files_.insert(plain_path(file));
     std::error_code ignored;
     const fs::path directory = file.parent_path();
     const bool seen = std::find(checked_.begin(), checked_.end(), directory) != checked_.end();
@@ -53,5 +63,10 @@ void OutputPaths::check(const std::string& pattern, const std::vector<int>& fram
     const auto twice = std::adjacent_find(names.begin(), names.end());
     if (twice != names.end())
         fail(ExitCode::usage, option, "two frames would be written to '" + printable(*twice, 100) + "'");
+}
+
+void OutputPaths::spare(const fs::path& input) const {
+    if (files_.contains(plain_path(input)))
+        fail(ExitCode::usage, input.string(), "is read by this command and would be overwritten");
 }
 }

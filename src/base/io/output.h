@@ -1,6 +1,7 @@
 // Output paths of a command: checked before any work starts; a failed run leaves no directories behind.
 #pragma once
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,11 @@ public:
     void check(const std::filesystem::path& file);
     void check(const std::string& pattern, const std::vector<int>& frames, std::string_view option = "--output");
 
+    // Throws Error (usage) if a file checked before would overwrite this one.
+    void spare(const std::filesystem::path& input) const;
+
 private:
-    std::vector<std::filesystem::path> checked_, made_;
+    std::vector<std::filesystem::path> checked_, made_; // folders
+    std::set<std::filesystem::path> files_;
 };
 }

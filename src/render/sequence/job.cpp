@@ -1,8 +1,8 @@
 
 #include "render/sequence/job.h"
 #include "base/error.h"
-#include "base/io/file.h"
 #include "base/io/frames.h"
+#include "base/io/output.h"
 #include "modes/mode.h"
 #include "render/adaptive/to_target.h"
 #include "render/frame/frame.h"
@@ -13,7 +13,6 @@
 #include "trace/view.h"
 
 #include <algorithm>
-#include <set>
 
 namespace tyndall {
 namespace {
@@ -28,40 +27,22 @@ void check_picture(const Scene& scene, const RenderRequest& request) {
     if (low.x < 0 || low.y < 0 || low.x >= high.x || low.y >= high.y || high.x > size.x || high.y > size.y)
         fail(ExitCode::usage, "crop", "must lie inside the image and not be empty");
 }
-
-// The path without links and dots, as far as the file system can be read.
-std::filesystem::path plain_path(const std::filesystem::path& path) {
-    std::error_code error;
-    const std::filesystem::path plain = std::filesystem::weakly_canonical(path, error);
-    return error ? path : plain;
 }
 
-void check_outputs(const Scene& scene, const RenderRequest& request) {
+void check_outputs(const Scene& scene, const RenderRequest& request, OutputPaths& places) {
     if (request.frames.empty()) fail(ExitCode::usage, "frames", "there is nothing to render");
     if (std::filesystem::path(request.output).extension() != ".exr")
         fail(ExitCode::usage, printable(request.output), "the output must end in .exr");
     if (request.frames.size() > 1 && !has_frame_token(request.output))
         fail(ExitCode::usage, printable(request.output),
              "several frames need a frame number in the name, like name.####.exr");
-
-    std::set<std::filesystem::path> inputs, directories;
-    for (const InputFile& input : scene.inputs) inputs.insert(plain_path(input.path));
-    for (const int frame : request.frames) {
-        const std::string exr = frame_name(request.output, frame);
-        std::vector<std::filesystem::path> outputs{exr};
-        if (request.png) outputs.push_back(png_name(exr));
-        for (const std::filesystem::path& output : outputs) {
-            if (inputs.contains(plain_path(output)))
-                fail(ExitCode::usage, output.string(), "this file belongs to the scene and would be overwritten");
-            check_output(output);
-            directories.insert(output.has_parent_path() ? output.parent_path() : ".");
-        }
-    }
-    for (const std::filesystem::path& directory : directories) sweep_temporaries(directory);
-}
+    places.check(request.output, request.frames);
+    if (request.png)
+        for (const int frame : request.frames) places.check(png_name(frame_name(request.output, frame)));
+    for (const InputFile& input : scene.inputs) places.spare(input.path);
 }
 
-void check_job(const Scene& scene, const RenderRequest& request, const Mode& mode) {
+void check_job(const Scene& scene, const RenderRequest& request, const Mode& mode, OutputPaths& places) {
     check_layer_names(request.exr);
     check_picture(scene, request);
     find_camera(scene, request.camera);
@@ -72,7 +53,7 @@ void check_job(const Scene& scene, const RenderRequest& request, const Mode& mod
              std::string(mode.name) + " works on the finished image: variance and halves are not available");
     if (request.history > 0 && shutter_of(scene, request))
         fail(ExitCode::usage, "--history", "cannot be combined with an open shutter: add --shutter 0,0");
-    check_outputs(scene, request);
+    check_outputs(scene, request, places);
 }
 
 RenderPlan requested_plan(const RenderRequest& request) {

@@ -17,6 +17,7 @@
 #include <vector>
 
 namespace tyndall {
+class OutputPaths;
 struct CacheFolder;
 struct Choice;
 struct Mode;
@@ -113,7 +114,11 @@ inline std::filesystem::path png_name(const std::string& exr) {
     return std::filesystem::path(exr).replace_extension(".png");
 }
 
-// Checks image size, layers, names, directories and the target error, and removes leftovers of killed runs. Input files
-// must not be overwritten. Throws Error (usage, unwritable).
-void check_job(const Scene& scene, const RenderRequest& request, const Mode& mode);
+// Checks that the frames, and their PNGs, can be written and are not files of the scene, and removes leftovers of
+// killed runs. Throws Error (usage, unwritable).
+void check_outputs(const Scene& scene, const RenderRequest& request, OutputPaths& places);
+
+// Checks all that can be wrong with a request: image size, layers, the target error, outputs. Throws Error (usage,
+// unwritable).
+void check_job(const Scene& scene, const RenderRequest& request, const Mode& mode, OutputPaths& places);
 }

@@ -4,6 +4,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/io/cache_folder.h"
+#include "base/io/output.h"
 #include "base/parallel.h"
 #include "base/process.h"
 #include "base/text.h"
@@ -161,7 +162,8 @@ LoadedFrame load_first_frame(const Scene& scene, const RenderRequest& request, c
 RenderReport render_sequence(const Scene& scene, const RenderRequest& request, const RenderPlan& asked,
                              Progress& progress, std::atomic<bool>& cancel, LoadedFrame* first) {
     const double start = steady_seconds();
-    check_job(scene, request, *asked.mode);
+    OutputPaths places;
+    check_job(scene, request, *asked.mode, places);
     flush_denormals();
     RenderPlan plan = asked;
     if (request.png && !plan.exposure && needs_auto_exposure(scene, request))

@@ -145,12 +145,9 @@ int frame_count(const FileJob& job) {
 JobResult run_job(const FileJob& job, Progress& progress, std::atomic<bool>& cancel) {
     const auto* files = std::get_if<RenderJob>(&job);
     try {
-        OutputPaths places;
-        if (files) {
-            places.check(files->request.output, files->request.frames, "render");
-            return render(*files, progress, cancel);
-        }
+        if (files) return render(*files, progress, cancel);
         const BakeJob& fog = std::get<BakeJob>(job);
+        OutputPaths places;
         places.check(fog.output, fog.frames, "bake");
         return bake_fog(fog, progress, cancel);
     } catch (const Error& error) {

@@ -1,6 +1,7 @@
 #include "viewer/painting/save_picture.h"
 
 #include "base/error.h"
+#include "base/io/output.h"
 #include "modes/mode.h"
 #include "render/frame/frame.h"
 #include "render/frame/layers.h"
@@ -28,7 +29,8 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     apply_edits(request);
     if (!job.inputs.empty()) request.scene->inputs = job.inputs;
     const View view = view_of(request);
-    check_job(*request.scene, render, *plan.mode);
+    OutputPaths places;
+    check_job(*request.scene, render, *plan.mode, places);
     render.camera = job.camera;
 
     const Snapshot snapshot =

@@ -184,6 +184,15 @@ class PartsTest(ProgramTest):
         self.succeed("render", "--plan", plan, "-o", whole, "-q")
         self.refuse(3, [whole, "is not a part"], "merge", a, whole, c, "-o", out)
 
+    def test_inputs_are_never_written_over(self):
+        self.succeed("render", self.scene, "-o", self.path("sky.exr"), "--res", "8x4", "--samples", 1)
+        self.scene = self.write("scene.json", {**json.loads(self.scene.read_text()), "background": {"image": "sky.exr"}})
+        files = self.parts(self.plan("--samples", 2), 2)
+        for taken in [self.path("sky.exr"), files[1]]:
+            before = taken.read_bytes()
+            self.refuse(2, [taken.name, "overwritten"], "merge", *files, "-o", taken)
+            self.assertEqual(taken.read_bytes(), before)
+
     def test_every_damage_is_seen(self):
         plan = self.plan("--samples", 8)
         a, b = self.parts(plan, 2)
