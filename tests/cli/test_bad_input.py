@@ -385,6 +385,14 @@ class Check(ProgramTest):
         report = json.loads(run("check", "--json", path, bad).stdout)
         self.assertEqual(len(report["problems"]), 3)
 
+    def test_a_changed_image_is_told_by_its_checksum(self):
+        self.succeed("render", self.write("scene.json", scene()), "-o", self.path("out.exr"), "--frames", "1", "-q")
+        changed = self.path("out.exr").read_bytes().replace(b"march", b"marsh", 1)
+        lines = self.check(1, self.write("out.exr", changed))
+        self.assertEqual(len(lines), 1, lines)
+        self.assertIn("checksum", lines[0])
+        self.assertEqual(self.check(0, self.write("foreign.exr", changed.replace(b"tyndall:check", b"another:check"))), [])
+
     def test_missing_files_alone_are_exit_code_4(self):
         self.check(4, self.path("nothing.vdb"))
         self.check(1, self.path("nothing.vdb"), self.write("bad.json", scene(frame_rate=0)))

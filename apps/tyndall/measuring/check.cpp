@@ -39,6 +39,10 @@ void check_vdb(const std::filesystem::path& file, const std::string& grid, Probl
 
 void check_exr(const std::filesystem::path& file, Problems& problems) {
     const ExrFile exr = read_exr(file);
+    if (exr.attributes.contains("tyndall:check") && !exr.is_unchanged)
+        problems.push_back({file.string(), "damaged or edited: its contents do not match its checksum"});
+    if (const auto partial = exr.attributes.find("tyndall:partial"); partial != exr.attributes.end())
+        problems.push_back({file.string(), "merged while parts were missing, from " + printable(partial->second, 80)});
     for (const auto& [name, image] : exr.channels) {
         uint64_t bad = 0;
         for (const float value : image.pixels) bad += std::isnan(value) || (std::isinf(value) && name != "Z");

@@ -287,6 +287,7 @@ class PartsTest(ProgramTest):
         files = self.parts(plan, 8)
         self.merge(files, "all.exr", "--partial")
         self.assertEqual(read_channels(self.path("all.exr")), one)
+        self.succeed("check", self.path("all.exr"), files[0])
         out = self.path("some.exr")
         before = self.attributes("all.exr")
         for there, known in (([0, 1, 2, 4, 5, 6, 7], True), ([0, 5], True), ([2], False)):
@@ -302,6 +303,9 @@ class PartsTest(ProgramTest):
             self.assertNotEqual(self.attributes("some.exr")["tyndall:hash"], before["tyndall:hash"])
             metrics = json.loads(run("compare", out, self.path("all.exr"), "--json").stdout)["metrics"]
             self.assertLess(metrics["E"], 0.3)
+            problem = run("check", out)
+            self.assertEqual(problem.returncode, 1)
+            self.assertIn(f"from {len(there) / 8:g} of the samples", problem.stdout)
         blocks = self.parts(self.plan("--samples", 2, "--float", name="few.json"), 12, name="few.exr")
         some = run("merge", *blocks[1:], "-o", out, "--partial")
         self.assertEqual(some.returncode, 1, some.stderr)
