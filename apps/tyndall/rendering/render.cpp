@@ -245,9 +245,10 @@ int run_render(const RenderOptions& args, const Globals& globals) {
     for (RenderRequest& request : requests) request.light_units = options.light_units;
     OutputPaths places;
     check_requests(args, requests, places);
+    constexpr unsigned to_write_checkpoint = 25; // up to 4 GiB; engines of farms grant 30 seconds and more
     set_stop_remark(part ? "; finished work is kept, --resume continues"
                          : "; finished frames are kept, --resume continues",
-                    part ? 10 : 1);
+                    part ? to_write_checkpoint : 1);
     const Scene scene = load_scene(requests[0].scene_file, options);
     if (saved) check_inputs(*saved, scene);
     if (saved) requests[0].files = prepared_files(args, *saved, requests[0].frames, globals);

@@ -9,7 +9,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int seconds_to_stop = 30; // after SIGTERM: a checkpoint is written within 10
+constexpr int seconds_to_stop = 30; // after SIGTERM: a checkpoint is written within 25
 
 // Formats objects and arrays of objects over several lines, everything else on one.
 void append_lines(std::string& text, const Json& value, const std::string& indent) {
