@@ -7,8 +7,10 @@
 #include "base/io/output.h"
 #include "base/parallel.h"
 #include "render/adaptive/planned.h"
+#include "render/image/png.h"
 #include "render/parts/manifest.h"
 #include "render/parts/merge.h"
+#include "render/sequence/auto_exposure.h"
 #include "scene/scene.h"
 
 #include <algorithm>
@@ -22,7 +24,7 @@ namespace {
 struct Options {
     std::vector<std::string> parts;
     std::string output, plan, wait, count, frames;
-    bool remove = false, partial = false;
+    bool remove = false, partial = false, png = false;
 };
 
 // The files that PARTS name: the files themselves, or with --parts all parts of frames with those names.
@@ -129,12 +131,24 @@ void say_merged(const Merge& merge, int frame, const std::string& file, const Me
     merge.say(line);
 }
 
+// One exposure for all PNGs, where the scene sets none: that of a single run.
+void measure_exposure(Merge& merge, const Scene& scene) {
+    RenderPlan& plan = merge.plan.plan;
+    if (!merge.args.png || !needs_auto_exposure(scene, merge.plan.request)) return;
+    plan.exposure = automatic_exposure(scene, merge.plan.request, orders_of(*plan.mode, plan.settings));
+    merge.say(formatted("PNGs: automatic exposure, %+.1f EV", *plan.exposure));
+}
+
 void merge_one(Merge& merge, const Scene& scene, int frame, const std::vector<PartFile>& parts,
                const PartGroups& groups) {
     const double start = steady_seconds();
     const std::string file = frame_name(merge.args.output, frame);
     const MergedFrame result = merge_frame(parts, groups, scene, merge.plan);
-    write_exr(file, result.layers, result.provenance, merge.plan.request.exr);
+    const RenderRequest& request = merge.plan.request;
+    write_exr(file, result.layers, result.provenance, request.exr);
+    if (merge.args.png)
+        write_png(png_name(file), stored_color(result.layers, request.exr),
+                  display_of(scene, request, merge.plan.plan, frame));
     const bool whole = groups.gap.empty();
     const double lacking = whole ? missing_groups(merge.plan.request.grouping.error, result.stats, groups.groups) : 0;
     if (lacking > 0 && !merge.globals.quiet) say_lacking(merge.plan, lacking, groups.groups, frame, file);
@@ -187,12 +201,15 @@ int run_merge(const Options& args, const Globals& globals) {
         groups[frame] = check_parts(parts, merge.plan);
         if (!groups[frame].gap.empty() && !args.partial) refuse(groups[frame].beside.string(), groups[frame].gap);
         check_prepared(merge.plan, frame);
-        places.check(std::filesystem::path(frame_name(args.output, frame)));
+        const std::string file = frame_name(args.output, frame);
+        places.check(std::filesystem::path(file));
+        if (args.png) places.check(png_name(file));
     }
     const Scene scene = load_scene(merge.plan.request.scene_file, {merge.plan.request.light_units});
     check_inputs(merge.plan, scene);
     for (const InputFile& input : scene.inputs) places.spare(input.path);
     for (const std::string& part : names) places.spare(part);
+    measure_exposure(merge, scene);
 
     for (const auto& [frame, parts] : frames) {
         stop_if_cancelled();
@@ -216,6 +233,7 @@ Run add_merge(const Command& program) {
                    "wait at most this many seconds for named parts that do not exist yet: a\n"
                    "shared file system may show new files late (default: 0)",
                    "SECONDS");
+    command.flag("--png", args->png, "also write images for viewing (8-bit sRGB)");
     command.flag("--partial", args->partial,
                  "merge the existing parts even if some are missing: more noise, and exit\n"
                  "code 1");

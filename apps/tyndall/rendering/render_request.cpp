@@ -220,7 +220,7 @@ RenderRequest planned_request(const RenderOptions& args, SavedPlan& plan) {
     if (!args.checkpoint.empty())
         request.checkpoint_seconds = 60 * number_option("--checkpoint", args.checkpoint, 0.01, 10000);
     if (is_part(grouping) && args.png)
-        fail(ExitCode::usage, "--png", "a part is not an image; tyndall merge writes the frame");
+        fail(ExitCode::usage, "--png", "a part is not an image; tyndall merge --png writes the frame's");
     if (!args.frames.empty()) {
         request.frames = parse_frames(args.frames);
         for (const int frame : request.frames)

@@ -280,6 +280,15 @@ class PartsTest(ProgramTest):
         self.assertFalse(checkpoint.exists())
         self.refuse(2, ["--checkpoint", "needs --part or --more"], "render", "--plan", plan, "-o", self.path("x.exr"), "--checkpoint", 1)
 
+    def test_pngs_are_those_of_one_run(self):
+        for name, exposure in (("measured", {}), ("stated", {"exposure": 2})):
+            with self.subTest(exposure=name):
+                self.scene = self.write("scene.json", {**json.loads(self.scene.read_text()), **exposure})
+                plan = self.plan("--samples", 2, name=f"{name}.json")
+                self.one_run(plan, "--png")
+                self.merge(self.parts(plan, 2, name=f"{name}.exr"), "merged.exr", "--png")
+                self.assertEqual(self.path("merged.png").read_bytes(), self.path("one.png").read_bytes())
+
     def test_what_is_there_can_be_merged(self):
         """With more noise, which is told where it can be; the frame is never taken for a finished one."""
         plan = self.plan("--samples", 64, "--groups", 4, "--float")
