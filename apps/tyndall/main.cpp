@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "common.h"
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
@@ -83,7 +84,9 @@ void add_globals(const Command& program, Globals& globals, GlobalArgs& args) {
                 "STYLE")
         .group(global_group);
     program.flag("--json", globals.json, "report as JSON on stdout; progress goes to stderr").group(global_group);
-    program.flag("-q,--quiet", globals.quiet, "errors only: no progress, no remarks, no list of finished files")
+    program
+        .flag("-q,--quiet", globals.quiet,
+              "errors only: no remarks, no list of finished files, no progress unless\n--progress is given")
         .group(global_group);
     program.flag("-v,--verbose", globals.verbose, "say more: threads, files read, remarks").group(global_group);
 }
@@ -100,7 +103,16 @@ void apply_globals(Globals& globals, const GlobalArgs& args) {
     if (globals.verbose && !globals.quiet) say(formatted("threads: %d", thread_count()));
 }
 
+// "help COMMAND" means "COMMAND --help".
+void read_help(int argc, char** argv) {
+    static char flag[] = "--help";
+    if (argc < 2 || std::string_view(argv[1]) != "help") return;
+    std::rotate(argv + 1, argv + 2, argv + argc);
+    argv[argc - 1] = flag;
+}
+
 int run(int argc, char** argv) {
+    read_help(argc, argv);
     if (argc > 1 && std::string_view(argv[1]) == "view") return start_viewer({argv + 2, argv + argc});
     const CommandLine program("tyndall", "Tyndall bakes fog, lights it and renders it: OpenVDB in, OpenEXR out.",
                               "tyndall " TYNDALL_VERSION, global_group);

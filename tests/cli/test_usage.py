@@ -12,7 +12,7 @@ OPTIONS = {
                "--exposure", "--view-transform", "--light-units", "--missing", "--aov", "--background", "--png", "--resume", "--seed", "--isa",
                "--stats-json", "--orders", "--target-error", "--time-budget", "--float"],
     "compare": ["--frames", "--fail-above", "--heatmap", "--map", "--ppd"],
-    "merge": ["--parts", "--frames", "--wait", "--partial", "--remove-parts"],
+    "merge": ["--parts", "--frames", "--wait", "--png", "--partial", "--remove-parts"],
     "submit": ["--frames", "--parts", "--chunk", "--cpus", "--memory", "--dry-run", "--run", "--target-error", "--aov"],
     "status": ["--verify", "--tasks"],
     "verify": ["--frame", "--camera", "--res", "--samples", "--seed"],
@@ -41,6 +41,15 @@ class Help(ProgramTest):
                 for option in OPTIONS.get(command, []):
                     self.assertIn(option, result.stdout)
                 self.assertLessEqual(max(map(len, result.stdout.splitlines())), 120, command)
+
+    def test_help_is_a_command_too(self):
+        self.assertEqual(self.succeed("help").stdout, self.succeed("--help").stdout)
+        for command in COMMANDS:
+            self.assertEqual(self.succeed("help", command).stdout, self.succeed(command, "--help").stdout)
+
+    def test_help_says_what_the_program_does(self):
+        self.assertRegex(self.succeed("--help").stdout, r"--quiet .*no progress unless\n +--progress is given")
+        self.assertIn(".ies", self.succeed("check", "--help").stdout)
 
     def test_help_names_nothing_of_the_code(self):
         for command in [*COMMANDS, "plan", "stress", "chart", "view"]:

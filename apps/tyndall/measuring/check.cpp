@@ -234,8 +234,8 @@ Run add_check(const Command& program) {
     const Command command = program.command("check", "find problems in scenes, recipes, volumes and images");
     auto args = std::make_shared<Options>();
     command
-        .options("FILES", args->files, "files (.json .gltf .glb .vdb .nvdb .exr); a name with #### is a whole sequence",
-                 "")
+        .options("FILES", args->files,
+                 "files (.json .gltf .glb .vdb .nvdb .exr .ies); a name with #### is a whole sequence", "")
         .required();
     command.option("--frames", args->frames,
                    "frames a sequence should have (default: from the first found to the last)", "RANGE");
