@@ -41,6 +41,9 @@ struct Box {
     bool empty() const { return !(low.x <= high.x && low.y <= high.y && low.z <= high.z); }
     vec3 center() const { return 0.5f * (low + high); }
     vec3 size() const { return high - low; }
+    vec3 corner(int i) const {
+        return {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z};
+    } // 0..7
     void grow(vec3 point) { low = glm::min(low, point), high = glm::max(high, point); }
     void grow(const Box& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
 };
@@ -71,11 +74,7 @@ inline Box transform(const mat4& matrix, const Box& box) {
     if (box.empty()) return box;
     if (!is_finite(box.low) || !is_finite(box.high)) return everywhere();
     Box result;
-    for (int corner = 0; corner < 8; ++corner) {
-        const vec3 point(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                         corner & 4 ? box.high.z : box.low.z);
-        result.grow(vec3(matrix * vec4(point, 1)));
-    }
+    for (int i = 0; i < 8; ++i) result.grow(vec3(matrix * vec4(box.corner(i), 1)));
     return result;
 }
 

@@ -2,7 +2,7 @@
 
 #include "base/random.h"
 #include "integrate/lights/fire_lamps.h"
-#include "integrate/lights/mean_environment.h"
+#include "integrate/lights/light_error.h"
 #include "integrate/lights/mesh_lamps.h"
 #include "modes/shared_limitations.h"
 #include "scene/area_shape.h"
@@ -84,9 +84,7 @@ void add_mean_environment(const View& view, const Snapshot& snapshot, Limitation
     const double nits = nits_in_fog(snapshot);
     if (!(nits > 0)) return;
     const double off = mean_environment_error(view, snapshot);
-    limitations.push_back({off > wrong_error     ? Severity::wrong
-                           : off > visible_error ? Severity::degraded
-                                                 : Severity::info,
+    limitations.push_back({severity_of(off),
                            &limitation::mean_environment,
                            Subject::light,
                            snapshot.environment->name,

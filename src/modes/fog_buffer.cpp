@@ -9,12 +9,12 @@
 #include "scene/light.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
+#include "trace/view.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_reach.h"
 
 namespace tyndall {
 namespace {
-constexpr int tile_side = 4;
 constexpr uint32_t use_id = 0xf09u; // decorrelates these random numbers from other uses
 
 // A batch of rays to evaluate.

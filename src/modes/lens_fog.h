@@ -19,8 +19,8 @@ inline constexpr LimitationKind no_fog_picture{"no_fog_picture",
 // same planar depths of start and end. Returns `scatter` itself if the camera has no lens.
 ScatterFunction through_middle(const View& view, ScatterFunction scatter);
 
-// Reports the largest circle of confusion among the lamps in the image and the far end of the fog. For techniques that
-// use through_middle().
+// Reports the largest circle of confusion among the lamps in the image, the edges of beams and shadows, the near side
+// of volumes and the far end of the fog. For techniques that use through_middle().
 void add_fog_through_middle(const View& view, const Snapshot& snapshot, Limitations& limitations);
 
 // Reports that the setting `row` has no effect through a lens. For techniques that use a FogBuffer.

@@ -87,7 +87,8 @@ std::string sentence_of(const Limitation& limitation) {
 }
 
 std::string line_of(const LimitationGroup& group) {
-    return std::string(name_of(group.worst.severity)) + ": " + where_of(group) + ": " + sentence_of(group.worst);
+    return std::string(name_of(group.worst.severity)) + ": " + where_of(group) + ": " + sentence_of(group.worst) +
+           " (" + std::string(group.worst.kind->id) + ")";
 }
 
 std::span<const double> amounts_of(const Limitation& limitation) {

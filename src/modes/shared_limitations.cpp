@@ -1,5 +1,6 @@
 #include "modes/shared_limitations.h"
 
+#include "integrate/march_steps.h"
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "scene/scene.h"
@@ -114,14 +115,38 @@ std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot) {
     return in_scene.empty() ? in_fog : in_scene;
 }
 
+namespace {
+// Longest steps in a medium, of camera rays of which each places `steps` over all fog of the scene, and the longest of
+// them that is inside the medium; meters.
+struct StepLengths {
+    float step = 0, inside = 0;
+};
+StepLengths step_lengths(const View& view, const Snapshot& snapshot, const Medium& medium, int steps) {
+    constexpr int across = 24, down = 14;
+    std::vector<vec2> pixels;
+    for (int i = 0; i < across * down; ++i)
+        pixels.push_back((vec2(i % across, i / across) + 0.5f) / vec2(across, down) * vec2(view.size));
+    if (is_finite(medium.world_bounds.size()))
+        if (const auto middle = pixel_of(view.camera, view.size, medium.world_bounds.center()))
+            pixels.push_back(glm::clamp(*middle, vec2(0), vec2(view.size)));
+    StepLengths longest;
+    for (const vec2 pixel : pixels) {
+        const Ray ray = camera_ray(view.camera, view.size, pixel);
+        const Interval<float> fog = scene_part(snapshot, ray, fog_interval(snapshot.media, ray));
+        const float inside = clip(medium.world_bounds, ray.origin, ray.direction, fog).length();
+        if (!(inside > 0) || !std::isfinite(fog.high)) continue;
+        const float step = fog.length() / static_cast<float>(steps);
+        longest.step = std::max(longest.step, step), longest.inside = std::max(longest.inside, std::min(step, inside));
+    }
+    return longest;
+}
+}
+
 void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations) {
-    const std::vector<Ray> rays = probing_rays(view, snapshot);
     for (const Medium& medium : thickest_media(snapshot)) {
         if (only_emits(medium.optics)) continue; // sampled at its own nodes, not at steps
-        float length = 0;
-        for (const Ray& ray : rays)
-            length = std::max(length, clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max}).length());
-        const float step = length / static_cast<float>(steps), depth = step * medium.majorant();
+        const auto [step, inside] = step_lengths(view, snapshot, medium, steps);
+        const float depth = inside * medium.majorant();
         if (medium.density.kind == DensityKind::bricks) {
             const vec3 voxels = medium.density.bricks->voxel_size;
             const float voxel = std::min(voxels.x, std::min(voxels.y, voxels.z));

@@ -103,8 +103,11 @@ void add_to_every_mode(const View& view, const Snapshot& snapshot, Limitations& 
 void add_mean_albedo(const Snapshot& snapshot, Limitations& limitations);
 void add_mean_emission(const Snapshot& snapshot, Limitations& limitations);
 
-// Relative errors that are visible, and that make an image wrong.
+// The severity of a relative RMS error.
 inline constexpr double visible_error = 0.02, wrong_error = 0.5;
+constexpr Severity severity_of(double error) {
+    return error > wrong_error ? Severity::wrong : error > visible_error ? Severity::degraded : Severity::info;
+}
 
 // Whether a medium scatters light: not purely emissive, and albedo above 0.
 bool scatters_light(const Medium& medium);

@@ -59,8 +59,14 @@ inline float range_window(float distance, float range) {
     return std::clamp(1 - x4, 0.0f, 1.0f);
 }
 
-// KHR_lights_punctual's cone: clamp(cosine · scale + offset, 0, 1)², 1 inside inner_cone, 0 outside outer_cone. Its
-// guard of 0.001 against division by zero would dim cones under 2.6°; this one is below any cone's own width.
+// Least width, in cosines, of the soft edge of a cone. KHR_lights_punctual's 0.001 against division by zero would dim
+// cones under 2.6°; this is below any cone's own width.
+inline double min_cone_edge(double outer_cone) {
+    const double half = std::sin(0.5 * outer_cone);
+    return std::clamp(0.5 * half * half, 1e-12, 1e-6);
+}
+
+// KHR_lights_punctual's cone: clamp(cosine · scale + offset, 0, 1)², 1 inside inner_cone, 0 outside outer_cone.
 struct ConeFalloff {
     float scale, offset;
     float at(float cosine) const {
@@ -69,8 +75,8 @@ struct ConeFalloff {
     }
 };
 inline ConeFalloff cone_falloff(const Light& light) {
-    const float outer = std::cos(light.outer_cone), half = std::sin(0.5f * light.outer_cone);
-    const float scale = 1 / std::max(std::cos(light.inner_cone) - outer, std::clamp(0.5f * half * half, 1e-12f, 1e-6f));
+    const float outer = std::cos(light.outer_cone), least = static_cast<float>(min_cone_edge(light.outer_cone));
+    const float scale = 1 / std::max(std::cos(light.inner_cone) - outer, least);
     return {scale, -outer * scale};
 }
 }

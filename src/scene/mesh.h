@@ -41,7 +41,8 @@ struct Mesh {
     std::string name;
     std::vector<vec3> positions, normals;
     std::vector<vec2> uvs;
-    std::vector<vec3> colors; // vertex colors times base_color; empty = white
+    std::vector<vec3> colors;  // vertex colors, times base_color; empty = white
+    std::vector<float> alphas; // of vertices, times the material's; empty = 1
     std::vector<glm::uvec3> triangles;
     int material = -1; // -1 = white Lambert
     std::vector<MorphTarget> targets;

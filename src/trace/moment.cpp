@@ -19,7 +19,7 @@ template<class Visit> void visit_brightness(const Scene& scene, const Visit& vis
     };
     for (const LightSource& light : scene.lights)
         visit_all(light.color, light.intensity, light.exposure, light.temperature, light.volume_scale,
-                  light.surface_scale);
+                  light.surface_scale, light.width, light.height, light.radius, light.inner_cone, light.outer_cone);
     if (const auto& sky = scene.environment; sky.has_value()) {
         of_background(sky->map);
         visit_all(sky->intensity, sky->exposure, sky->volume_scale, sky->surface_scale);

@@ -1,6 +1,7 @@
 // Moments in time: a single one, the moments that a frame averages, and a scene's nodes and cameras at a time.
 #pragma once
 #include "base/math.h"
+#include "scene/keyed.h"
 #include "scene/shutter.h"
 
 #include <optional>
@@ -26,6 +27,14 @@ template<class Value> auto mean_brightness(const Moment& moment, const Value& va
     decltype(value(moment.seconds)) sum(0);
     for (const ExposedTime& exposed : moment.exposed) sum += static_cast<float>(exposed.weight) * value(exposed.time);
     return sum;
+}
+
+// The mean of a factor on brightness over the moment, weighted by that brightness.
+template<class Value> float mean_factor(const Moment& moment, const Keyed<float>& factor, const Value& brightness) {
+    if (factor.constant()) return factor.at(moment.seconds);
+    const float whole = mean_brightness(moment, brightness);
+    if (!(whole > 0)) return factor.at(moment.seconds);
+    return mean_brightness(moment, [&](double s) { return brightness(s) * factor.at(s); }) / whole;
 }
 
 // The moments that a frame averages, with equal weights.

@@ -27,11 +27,7 @@ using Points = std::vector<vec3>;
 
 void add_corners(const mat4& matrix, const Box& box, Points& points) {
     if (box.empty() || !is_finite(box.low) || !is_finite(box.high)) return;
-    for (int i = 0; i < 8; ++i) {
-        const vec3 corner(i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y,
-                          i & 4 ? box.high.z : box.low.z);
-        points.push_back(vec3(matrix * glm::vec4(corner, 1)));
-    }
+    for (int i = 0; i < 8; ++i) points.push_back(vec3(matrix * glm::vec4(box.corner(i), 1)));
 }
 
 // Up to 256 vertices spread over a posed mesh.
@@ -98,10 +94,16 @@ bool changes(const Scene& scene, const CameraSource& camera) {
 bool changes(const Scene& scene, const LightSource& light) {
     const auto all = [](const auto&... values) { return (values.constant() && ...); };
     if (light.gobo && !all(light.gobo->rotation, light.gobo->scale)) return true;
-    return is_moving(scene, light.node) || !all(light.position, light.direction, light.up, light.profile_rotation,
-                                                light.inner_cone, light.outer_cone, light.radius, light.angle);
+    return is_moving(scene, light.node) ||
+           !all(light.position, light.direction, light.up, light.profile_rotation, light.inner_cone, light.outer_cone,
+                light.radius, light.angle, light.width, light.height);
 }
 
+bool changes(const PhaseSource& phase) {
+    const auto all = [](const auto&... values) { return (values.constant() && ...); };
+    return !all(phase.g, phase.alpha, phase.droplet_diameter, phase.weight) ||
+           std::ranges::any_of(phase.lobes, [](const PhaseSource& lobe) { return changes(lobe); });
+}
 }
 
 bool changes(const MediumSource& medium) {
@@ -109,7 +111,8 @@ bool changes(const MediumSource& medium) {
     if ((medium.recipe && recipe_speed(*medium.recipe) > 0) || moves(medium)) return true;
     if (medium.blackbody && !all(medium.blackbody->scale, medium.blackbody->tint)) return true;
     return !all(medium.extinction, medium.g, medium.albedo, medium.emission, medium.translation, medium.scale,
-                medium.rotate, medium.rotation, medium.height_base, medium.height_falloff);
+                medium.rotate, medium.rotation, medium.height_base, medium.height_falloff) ||
+           changes(medium.phase);
 }
 
 namespace {

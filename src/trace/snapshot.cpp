@@ -28,14 +28,10 @@ constexpr float core_share = 1e-5f; // fraction of the scene's extent: core radi
 // Gives a light its brightness: the mean over the moment's share of the exposure.
 void set_brightness(const LightSource& source, const Moment& moment, Light& light) {
     const auto intensity = [&](double seconds) { return intensity_of(source, seconds); };
-    const auto scale_of = [&](const Keyed<float>& scale) {
-        if (scale.constant()) return scale.at(moment.seconds);
-        const auto scaled = [&](double seconds) { return luminance(intensity(seconds)) * scale.at(seconds); };
-        const float whole = luminance(light.intensity);
-        return whole > 0 ? mean_brightness(moment, scaled) / whole : scale.at(moment.seconds);
-    };
+    const auto brightness = [&](double seconds) { return luminance(intensity(seconds)); };
     light.intensity = mean_brightness(moment, intensity);
-    light.volume_scale = scale_of(source.volume_scale), light.surface_scale = scale_of(source.surface_scale);
+    light.volume_scale = mean_factor(moment, source.volume_scale, brightness);
+    light.surface_scale = mean_factor(moment, source.surface_scale, brightness);
 }
 
 Light light_at(const Scene& scene, const LightSource& source, const Moment& moment, vec3& up) {
@@ -87,26 +83,22 @@ bool shines(const Light& light) {
     return is_finite(light.intensity) && max_component(light.intensity) > 0 &&
            std::max(light.volume_scale, light.surface_scale) > 0;
 }
+}
 
-// Whether a box is finite in every direction; fog without bounds does not tell where the scene is.
-bool bounded(const Box& box) { return !box.empty() && is_finite(box.low) && is_finite(box.high); }
-
-// Sets anchor and extent from the scene and its camera at the first frame; without any positions, the extent is the
-// fog's mean free path. Lengths that must not depend on the unit of length are fractions of the extent, and lattices
-// fixed in the world are aligned to the anchor.
 void set_extent(const Scene& scene, Snapshot& snapshot) {
     const double seconds = moment_of(scene, scene.first_frame).seconds;
+    const auto grow = [&](Box& box, int node, const Keyed<vec3>& position) {
+        box.grow(node >= 0 ? vec3(node_matrix(scene, node, seconds)[3]) : position.at(seconds));
+    };
+    const CameraSource* camera = scene.cameras.empty() ? nullptr : &scene.cameras[static_cast<size_t>(scene.camera)];
     Box box = scene_bounds(scene, seconds);
-    for (const LightSource& light : scene.lights)
-        if (light.kind != LightKind::sun)
-            box.grow(light.node >= 0 ? vec3(node_matrix(scene, light.node, seconds)[3]) : light.position.at(seconds));
-    if (!scene.cameras.empty()) {
-        const CameraSource& camera = scene.cameras[static_cast<size_t>(scene.camera)];
-        if (camera.node >= 0)
-            box.grow(vec3(node_matrix(scene, camera.node, seconds)[3]));
-        else
-            box.grow(camera.position.at(seconds)), box.grow(camera.target.at(seconds));
-    }
+    if (camera) grow(box, camera->node, camera->position);
+    // Lamps may stand for suns, and a camera's target for a direction.
+    const auto is_point = [&] { return box.empty() || box.low == box.high; };
+    if (is_point())
+        for (const LightSource& light : scene.lights)
+            if (light.kind != LightKind::sun) grow(box, light.node, light.position);
+    if (is_point() && camera && camera->node < 0) box.grow(camera->target.at(seconds));
     if (!box.empty() && is_finite(box.low) && is_finite(box.high)) snapshot.anchor = box.center();
     const float size = box.empty() ? 0 : glm::length(box.size());
     if (size > 0 && std::isfinite(size)) return void(snapshot.extent = size);
@@ -114,6 +106,10 @@ void set_extent(const Scene& scene, Snapshot& snapshot) {
     for (const MediumSource& medium : scene.media) extinction = std::max(extinction, medium.extinction.at(seconds));
     if (extinction > 0) snapshot.extent = 1 / extinction;
 }
+
+namespace {
+// Whether a box is finite in every direction; fog without bounds does not tell where the scene is.
+bool bounded(const Box& box) { return !box.empty() && is_finite(box.low) && is_finite(box.high); }
 
 Box scene_bounds(const Snapshot& snapshot) {
     Box box = snapshot.occluders->bounds();

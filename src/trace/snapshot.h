@@ -89,6 +89,12 @@ struct Snapshot {
 Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previous = nullptr,
                        MissingFrame missing = MissingFrame::error, std::shared_ptr<CacheFolder> files = nullptr);
 
+// Sets anchor and extent from the surfaces, bounded fog and camera at the first frame; in empty scenes from lamps, else
+// from what the camera looks at, else from the fog's mean free path. Lengths that must not depend on the unit of length
+// are fractions of the extent, and lattices fixed in the world are aligned to the anchor. Snapshots take both from the
+// previous one: needed again when the scene was edited.
+void set_extent(const Scene& scene, Snapshot& snapshot);
+
 // All moments of a frame, each sharing data with the previous one. Fog is rebuilt when it has moved by half a voxel,
 // less often if that would take more than about 1 GiB; the moments in between share it.
 Snapshot make_snapshot(const Scene& scene, const FrameMoments& moments, const Snapshot* previous = nullptr,

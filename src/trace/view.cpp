@@ -8,7 +8,6 @@
 
 namespace tyndall {
 namespace {
-constexpr int tile_side = 4;
 constexpr uint32_t use_lens = 0x1e45u, use_shutter = 0x5477u;
 
 int lamp_factor(const View& view, ivec2 tile) {

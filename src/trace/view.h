@@ -12,7 +12,9 @@
 #include <vector>
 
 namespace tyndall {
-// A number for each tile of 4×4 pixels, usually the factor on its sample count.
+inline constexpr int tile_side = 4; // pixels; a tile's 16 rays are traced together
+
+// A number for each tile, usually the factor on its sample count.
 struct TileFactors {
     ivec2 low{0}; // index of the first tile
     Image<uint16_t> factors;

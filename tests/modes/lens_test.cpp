@@ -141,6 +141,20 @@ TEST(LensFog, TheBlurThatIsMissingIsTheLamps) {
     }
 }
 
+TEST(LensFog, TheBlurThatIsMissingIsThatOfTheNearestBeam) {
+    const View view = lens_view(0.3f);
+    const Box fog{vec3(-3, -1, -6), vec3(3, 4, 6)};
+    const Light beam = spot_light({0, 4, 5}, {0, -1, 0}, 20, 0.1f, 0.12f); // a meter before the camera
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.01f, fog)}, {beam});
+    const Limitations told = find_mode("froxel").limitations(view, snapshot, quick_settings());
+    const auto found =
+        std::ranges::find_if(told, [](const Limitation& one) { return one.is(limitation::fog_through_middle); });
+    ASSERT_NE(found, told.end());
+    EXPECT_GT(found->amounts[0], 0.7 * static_cast<double>(blur_diameter(view.camera, size, 1)));
+    EXPECT_LT(found->amounts[0], 2 * static_cast<double>(blur_diameter(view.camera, size, 1)));
+    EXPECT_NEAR(found->amounts[1], 1, 0.6);
+}
+
 TEST(LensFog, APictureOfTheFogIsNotUsed) {
     const TestScene stage = hazy_stage();
     const View view = lens_view(0.3f);

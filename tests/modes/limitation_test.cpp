@@ -22,9 +22,9 @@ TEST(Limitations, AlikeAreOneGroupWithTheWorstNumbers) {
     said.push_back({Severity::wrong, &dark, Subject::medium, "smoke"});
     const std::vector<LimitationGroup> groups = groups_of(said);
     ASSERT_EQ(groups.size(), 3u);
-    EXPECT_EQ(line_of(groups[0]), "degraded: 12 lights (a, b, c, ...): blurred over 20 m in 4 places");
-    EXPECT_EQ(line_of(groups[1]), "info: light z: blurred over 1 m in 1 places");
-    EXPECT_EQ(line_of(groups[2]), "wrong: 2 media (dust, smoke): is dark");
+    EXPECT_EQ(line_of(groups[0]), "degraded: 12 lights (a, b, c, ...): blurred over 20 m in 4 places (blurred)");
+    EXPECT_EQ(line_of(groups[1]), "info: light z: blurred over 1 m in 1 places (blurred)");
+    EXPECT_EQ(line_of(groups[2]), "wrong: 2 media (dust, smoke): is dark (dark)");
 }
 
 TEST(Limitations, AmountsHaveTwoDigitsAndNoExponent) {
@@ -33,11 +33,11 @@ TEST(Limitations, AmountsHaveTwoDigitsAndNoExponent) {
         one.push_back({Severity::info, &blurred, Subject::light, "z", {amount, 1}});
         return line_of(groups_of(one)[0]);
     };
-    EXPECT_EQ(said(0.01234), "info: light z: blurred over 0.012 m in 1 places");
-    EXPECT_EQ(said(99.4), "info: light z: blurred over 99 m in 1 places");
-    EXPECT_EQ(said(99.6), "info: light z: blurred over 100 m in 1 places");
-    EXPECT_EQ(said(163), "info: light z: blurred over 160 m in 1 places");
-    EXPECT_EQ(said(-123456), "info: light z: blurred over -120000 m in 1 places");
+    EXPECT_EQ(said(0.01234), "info: light z: blurred over 0.012 m in 1 places (blurred)");
+    EXPECT_EQ(said(99.4), "info: light z: blurred over 99 m in 1 places (blurred)");
+    EXPECT_EQ(said(99.6), "info: light z: blurred over 100 m in 1 places (blurred)");
+    EXPECT_EQ(said(163), "info: light z: blurred over 160 m in 1 places (blurred)");
+    EXPECT_EQ(said(-123456), "info: light z: blurred over -120000 m in 1 places (blurred)");
 }
 
 TEST(Limitations, WhereIsWordAndName) {

@@ -5,7 +5,9 @@
 #include "scene/light.h"
 #include "support/random_points.h"
 #include "support/tiny_scenes.h"
+#include "trace/fluence/light_paths.h"
 #include "trace/fluence/scattering_orders.h"
+#include "trace/lights/environment.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/medium.h"
 #include "volume/phase.h"
@@ -107,5 +109,54 @@ TEST(ScatteringOrders, BoundIsAboveWhatIsMissing) {
     EXPECT_EQ(truncation_bound(snapshot_of({homogeneous_medium(1)}, {}), 1), double(infinity));
     EXPECT_EQ(measured_ratio(snapshot_of({homogeneous_medium(1)}, {})).ratio, 0);
 }
+}
+
+// Power that fog scatters of light straight from the lights, and its standard error.
+Mean scattered_once(const Snapshot& snapshot) {
+    constexpr int batches = 16;
+    constexpr int64_t each = 4096;
+    LightPathRules rules;
+    rules.reach = light_reach(snapshot);
+    std::vector<double> found;
+    for (uint32_t seed = 0; seed < batches; ++seed) {
+        LightPathResult result;
+        rules.seed = seed;
+        trace_light_paths(snapshot, even_strata(snapshot, rules.reach, 1), rules, 0, each, each, result);
+        found.push_back(result.scattered_once);
+    }
+    return mean_of(found);
+}
+
+TEST(ScatteringOrders, FogIsFoundInTheMiddleOfALandscape) {
+    // A cube of a meter, alone and with two leaves a kilometer away, which shadow nothing: sixteen million times its
+    // cross section.
+    const std::vector<Medium> cube{homogeneous_medium(1, {vec3(0), vec3(1)})};
+    const auto leaf = [](float x) { return quad({x, 0, x}, {0.1f, 0, 0}, {0, 0, 0.1f}); };
+    Light soft = sun_light({0.2f, -1, 0.4f});
+    soft.angle = 0.1f;
+    const auto expect_alike = [&](const std::vector<Light>& lights, std::shared_ptr<const Environment> sky) {
+        Snapshot alone = snapshot_of(cube, lights);
+        TestScene wide = make_scene(cube, lights, {leaf(-2000), leaf(2000)});
+        alone.environment = wide.snapshot.environment = std::move(sky);
+        const Mean expected = scattered_once(alone), found = scattered_once(wide.snapshot);
+        EXPECT_NEAR(found.value, expected.value, 4 * std::hypot(found.error, expected.error));
+        EXPECT_LT(found.error, 0.02 * expected.value);
+        const ScatteringRatio ratio = measured_ratio(wide.snapshot, 65536), truth = measured_ratio(alone, 65536);
+        EXPECT_NEAR(ratio.ratio, truth.ratio, ratio.high - ratio.low + truth.high - truth.low);
+        EXPECT_LT(ratio.high, 1.2 * truth.ratio);
+    };
+    BackgroundState sky;
+    sky.color = vec3(1);
+    expect_alike({sun_light({0.2f, -1, 0.4f})}, nullptr);
+    expect_alike({soft}, nullptr);
+    expect_alike({}, make_environment(sky));
+}
+
+TEST(ScatteringOrders, NothingIsCertainIfNoPathMeetsTheFog) {
+    // A lamp in a closed box.
+    const TestScene scene = make_scene({homogeneous_medium(1, {vec3(10), vec3(11)})}, {point_light(vec3(0), 1)},
+                                       {box_of(vec3(-1), vec3(1))});
+    EXPECT_EQ(measured_ratio(scene.snapshot).ratio, 0);
+    EXPECT_EQ(measured_ratio(scene.snapshot).high, double(infinity));
 }
 }

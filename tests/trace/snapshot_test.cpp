@@ -131,6 +131,38 @@ TEST(Snapshot, MomentsShareAllOfAFlash) {
     EXPECT_EQ(make_snapshot(scene, frame_moments(scene, 0, {0, 0.3, {}}, 4)).lights.size(), 2u) << "before it";
 }
 
+TEST(Snapshot, ScalesAreAveragedWithTheLightTheyScale) {
+    // 10 t times 1 - t over 0..1: 10/6.
+    Scene scene;
+    scene.frame_rate = 1;
+    EnvironmentSource& sky = scene.environment.emplace();
+    sky.map.color = vec3(1), sky.intensity = from_to(0.0f, 10.0f);
+    sky.volume_scale = sky.surface_scale = from_to(1.0f, 0.0f);
+    LightSource& lamp = scene.lights.emplace_back();
+    lamp.intensity = sky.intensity, lamp.volume_scale = lamp.surface_scale = sky.volume_scale;
+    const Snapshot middle = make_snapshot(scene, frame_moments(scene, 0, {0, 1, {}}, 1).middle);
+    const Environment& environment = *middle.environment;
+    const Light& light = middle.lights[0];
+    for (const auto& [intensity, scale] : {std::pair{environment.scale.x, environment.volume_scale},
+                                           {environment.scale.x, environment.surface_scale},
+                                           {light.intensity.x, light.volume_scale},
+                                           {light.intensity.x, light.surface_scale}})
+        EXPECT_NEAR(intensity * scale, 10.0f / 6, 0.01f);
+}
+
+TEST(Snapshot, ExtentIgnoresStandInsForSunsAndFarTargets) {
+    Scene scene;
+    add_mesh(scene, quad(vec3(0), {4, 0, 0}, {0, 0, 3}));
+    scene.cameras.emplace_back().position = vec3(0, 0, 3), scene.cameras[0].target = vec3(0);
+    const float extent = make_snapshot(scene, Moment{0, 0}).extent;
+    EXPECT_NEAR(extent, 5, 0.1f);
+    scene.cameras[0].target = vec3(0, 0, -1e6f);
+    scene.lights.emplace_back().position = vec3(1e6f);
+    EXPECT_EQ(make_snapshot(scene, Moment{0, 0}).extent, extent);
+    scene.instances.clear();
+    EXPECT_GT(make_snapshot(scene, Moment{0, 0}).extent, 1e6f) << "a lamp alone";
+}
+
 TEST(Snapshot, LightWithoutDirectionIsRefused) {
     Scene scene;
     scene.file = "room.json";

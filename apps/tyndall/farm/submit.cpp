@@ -1,4 +1,5 @@
 // tyndall submit: writes a job for a render farm, in the files of its engine.
+#include "base/io/file_hashes.h"
 #include "rendering/automatic.h"
 #include "rendering/plan_as_asked.h"
 
@@ -43,7 +44,7 @@ FarmJob job_of(const Options& args, const Scene& scene) {
     job.folder = job_folder(args.folder);
     job.engine = args.engine;
     job.program = std::filesystem::read_symlink("/proc/self/exe", ignored).string();
-    job.scene = std::filesystem::absolute(args.render.scene).lexically_normal().string();
+    job.scene = normal_path(args.render.scene).string();
     job.name = job_name_of(job.scene);
     job.frames = args.render.frames.empty() ? frames_between(scene.first_frame, scene.last_frame)
                                             : parse_frames(args.render.frames);

@@ -26,9 +26,10 @@ const Mode* mode_before(const RenderRequest& request) {
     if (attributes["tyndall:plan"].empty()) return nullptr;
     if (std::abs(number("tyndall:targetError") - request.target_error) > 1e-9) return nullptr;
     if (std::abs(number("tyndall:timeBudget") - request.time_budget) > 1e-9) return nullptr;
-    for (const Mode& mode : modes())
-        if (mode.name == attributes["tyndall:mode"]) return &mode;
-    return nullptr;
+    const bool missed = attributes.contains("tyndall:plannedMode");
+    const auto found =
+        std::ranges::find(modes(), attributes[missed ? "tyndall:plannedMode" : "tyndall:mode"], &Mode::name);
+    return found == modes().end() ? nullptr : &*found;
 }
 }
 

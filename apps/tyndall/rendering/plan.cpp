@@ -198,6 +198,7 @@ int run_plan(const Options& args, const Globals& globals) {
     if (!args.save.empty()) check_saved(args);
     if (args.render.mode != automatic) return save_as_asked(args, globals);
     RenderRequest request = make_request(args.render, main_mode());
+    request.mode_open = true;
     OutputPaths places;
     const Scene scene = load_to_plan(args, request, places);
     request.frames = {request.frames.empty() ? scene.first_frame : request.frames[0]};
@@ -216,7 +217,12 @@ int run_plan(const Options& args, const Globals& globals) {
         asked.mode = plan.chosen.mode->name;
         RenderPlan chosen = requested_plan(asked);
         chosen.settings = plan.settings, chosen.certificate = plan.certificate();
-        chosen.choice = std::make_shared<const Choice>(plan.chosen.choice);
+        Choice choice = plan.chosen.choice;
+        const auto moments = [&](const RenderRequest& one) {
+            return moments_of(scene, one, view.frame).moments.size();
+        };
+        if (moments(asked) != moments(request)) choice.measured.prepared = nullptr;
+        chosen.choice = std::make_shared<const Choice>(std::move(choice));
         save(args.save, scene, asked, chosen, groups_option(args), globals);
     }
     if (globals.json) {

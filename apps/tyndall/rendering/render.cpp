@@ -170,6 +170,7 @@ std::vector<RenderRequest> make_requests(const RenderOptions& args) {
         modes_option("--mode", args.mode == automatic ? std::string(main_mode().name) : args.mode);
     for (const Mode* mode : asked) {
         requests.push_back(make_request(args, *mode));
+        requests.back().mode_open = args.mode == automatic;
         if (asked.size() > 1) requests.back().output = with_word(args.output, mode->name);
     }
     return requests;

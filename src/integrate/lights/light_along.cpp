@@ -33,7 +33,8 @@ double radius_of(const Light& light) { return capped_radius(light); }
 
 void set_cone(const Light& light, LightAlong& along) {
     const double inner = std::cos(double(light.inner_cone)), outer = std::cos(double(light.outer_cone));
-    along.cone_scale = 1 / std::max(inner - outer, 1e-6), along.cone_offset = -outer * along.cone_scale;
+    along.cone_scale = 1 / std::max(inner - outer, min_cone_edge(light.outer_cone)),
+    along.cone_offset = -outer * along.cone_scale;
 }
 
 // Collects the distances at which the intensity of a local light has kinks.

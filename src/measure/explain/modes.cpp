@@ -8,10 +8,10 @@
 #include "render/frame/pixel_sum.h"
 #include "render/frame/samples.h"
 #include "trace/transmittance/light_depth.h"
+#include "trace/view.h"
 
 namespace tyndall {
 namespace {
-constexpr int tile_side = 4;
 constexpr int noisy_batches = 32;
 constexpr int largest_picture = 1 << 20; // pixels rendered by a mode that works on whole images
 

@@ -1,7 +1,6 @@
 // Profiles and gobos at their worst: sharp edges, dark poles, fine stripes, posts in the beam.
 #include "base/image.h"
 #include "measure/stress/authored.h"
-#include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/light_filters.h"
 #include "modes/shadow_map/limitations.h"
@@ -17,11 +16,15 @@
 
 namespace tyndall {
 namespace {
-// A pixel's few samples of a beam miss finer detail; shadows leave a third of a spot's light.
-const std::vector<Excuse> excuses{
-    {&limitation::sampled_gobo, 0.5}, {&limitation::blurred_filter, 0.5}, {&limitation::few_steps_for_glow, 2},
-    {&limitation::deep_froxels},      {&limitation::deep_steps},          {&limitation::coarse_shafts},
-    {&limitation::grainy_edges},      {&limitation::no_shadows, 3}};
+// A pixel's few samples of a beam miss finer detail.
+const std::vector<Excuse> excuses{{&limitation::sampled_gobo, 0.5},
+                                  {&limitation::blurred_filter, 0.5},
+                                  {&limitation::few_steps_for_glow, 2},
+                                  {&limitation::deep_froxels},
+                                  {&limitation::deep_steps},
+                                  {&limitation::coarse_shafts},
+                                  {&limitation::grainy_edges},
+                                  shadows_ignored};
 const Camera beside = camera_from({0, 0.5f, 5}, {0, 0.5f, 0});
 
 // An IES profile of candela over the angle from the light's axis, 0 to 90 degrees.

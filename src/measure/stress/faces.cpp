@@ -1,7 +1,6 @@
 // Rectangle, disc and sphere lights in fog: huge, edge on, next to the eye, half hidden.
 #include "measure/stress/authored.h"
 #include "modes/area_light_limitations.h"
-#include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/light_filters.h"
 #include "modes/shadow_map/limitations.h"
@@ -15,10 +14,14 @@
 
 namespace tyndall {
 namespace {
-const std::vector<Excuse> excuses{{&limitation::lamp_for_face}, {&limitation::hard_shadows},
-                                  {&limitation::coarse_shafts}, {&limitation::grainy_edges},
-                                  {&limitation::no_shadows, 3}, {&limitation::few_steps_for_glow},
-                                  {&limitation::deep_steps},    {&limitation::deep_froxels}};
+const std::vector<Excuse> excuses{{&limitation::lamp_for_face},
+                                  {&limitation::hard_shadows},
+                                  {&limitation::coarse_shafts},
+                                  {&limitation::grainy_edges},
+                                  shadows_ignored,
+                                  {&limitation::few_steps_for_glow},
+                                  {&limitation::deep_steps},
+                                  {&limitation::deep_froxels}};
 const Camera beside = camera_from({0, 0.2f, 5}, {0, 0.2f, 0});
 
 StressScene lit_by(Light face, Camera camera = beside, Medium haze = thin_haze(), std::vector<Mesh> meshes = {}) {

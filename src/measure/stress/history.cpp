@@ -1,6 +1,5 @@
 // Temporal reuse: lights that move, dim and go out, cuts, a bad frame; and the froxels that hold this light.
 #include "measure/stress/trial.h"
-#include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/shared_limitations.h"
 #include "scene/mesh.h"
@@ -28,8 +27,7 @@ const std::vector<Excuse> blur_of_froxels{{&limitation::moving_camera, 0.1}};
 // The eye moves by 0.2 optical depths, and light is constant within a froxel: it may jump by as much.
 const std::vector<Excuse> blurred{
     {&limitation::light_grid_cells, 0.22}, {&limitation::deep_steps, 0.22}, {&limitation::deep_froxels, 0.22}};
-const std::vector<Excuse> unseen{
-    {&limitation::coarse_shafts}, {&limitation::sun_without_shadows}, {&limitation::no_shadows}};
+const std::vector<Excuse> unseen{{&limitation::coarse_shafts}, shadows_ignored};
 
 Medium dust(float extinction = 0.3f) {
     return homogeneous_medium(extinction, {vec3(-3), vec3(3)}, forward_phase(0.3f));

@@ -1,6 +1,5 @@
 // Phase functions with lamps and suns: lobes that get narrow, two lobes, droplets, spikes of tables.
 #include "measure/stress/authored.h"
-#include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/shadow_map/limitations.h"
 #include "modes/shared_limitations.h"
@@ -19,8 +18,7 @@ const std::vector<Excuse> excuses{{&limitation::few_steps_for_glow, 2},
                                   {&limitation::deep_steps},
                                   {&limitation::coarse_shafts},
                                   {&limitation::grainy_edges, 1.5},
-                                  {&limitation::no_shadows},
-                                  {&limitation::sun_without_shadows}};
+                                  shadows_ignored};
 
 // Looking past a lamp that shines towards the eye.
 StressScene past_lamp(const Phase& phase, float extinction = 0.2f) {

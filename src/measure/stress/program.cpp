@@ -1,6 +1,5 @@
 // What all modes rely on: numbers near the ends of their range, threads, crops, phase functions, noise, metrics.
 #include "measure/stress/trial.h"
-#include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/shadow_map/limitations.h"
 #include "modes/shared_limitations.h"
@@ -23,10 +22,7 @@ namespace {
 // Positions are rounded to as much as 4 m, the gap is 1 m wide: light may fall anywhere. Lit floors have a root mean
 // square of 3.4 times the image's mean.
 const std::vector<Excuse> anywhere{{&limitation::float_precision, 4}};
-const std::vector<Excuse> coarse{{&limitation::coarse_shafts},
-                                 {&limitation::grainy_edges},
-                                 {&limitation::sun_without_shadows},
-                                 {&limitation::no_shadows}};
+const std::vector<Excuse> coarse{{&limitation::coarse_shafts}, {&limitation::grainy_edges}, shadows_ignored};
 
 // A roof with a gap over fog, the sun and a spot; moved to a place and scaled.
 StressScene room_at(vec3 place, float size) {

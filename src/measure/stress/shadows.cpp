@@ -1,6 +1,5 @@
 // Surfaces that block light: slits, wires, rooms, meshes of every quality, eyes in shadow.
 #include "measure/stress/trial.h"
-#include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/map_shadows.h"
 #include "modes/mode.h"
@@ -17,11 +16,9 @@
 namespace tyndall {
 namespace {
 const Excuse as_froxels{&limitation::coarse_shafts}, as_noise{&limitation::grainy_edges};
-// Without its shadows, a spot's light is three times as much.
-const Excuse sun_unseen{&limitation::sun_without_shadows}, unseen{&limitation::no_shadows, 3};
 // Four samples in each of 24 steps. Light that fills a third of the distance between them, as in the narrowest shafts
 // here, has a relative error of sqrt(1 / 0.3 - 1) = 1.5.
-const std::vector<Excuse> narrow{as_froxels, {as_noise.kind, 1.5}, sun_unseen};
+const std::vector<Excuse> narrow{as_froxels, {as_noise.kind, 1.5}, shadows_ignored};
 // For shadows much wider than froxels, steps and texels.
 const StressMeasure sharp{0.03, to_truth, nullptr, 1e-3, "march shadow-volume"};
 const StressMeasure fine{-1, to_truth, nullptr, 1e-3, "march shadow-volume"};
@@ -239,11 +236,11 @@ std::vector<StressCase> stress_shadows() {
         StressCase("lit-floor", group, "a lit floor does not shadow itself", "sun's elevation", "degrees",
                    {89, 45, 10, 3, 1}, Claim::physical, {}, lit_floor, sharp),
         StressCase("orbit", group, "the camera goes around a shaft of shadow", "azimuth", "degrees",
-                   {0, 60, 120, 180, 240, 300}, Claim::physical, {sun_unseen}, orbit, sharp),
+                   {0, 60, 120, 180, 240, 300}, Claim::physical, {shadows_ignored}, orbit, sharp),
         StressCase("against-the-sun", group, "rays become parallel to the sun's", "ray to sun", "degrees",
-                   {30, 5, 1, 0.01, 0}, Claim::physical, {sun_unseen}, along_the_sun, sharp),
+                   {30, 5, 1, 0.01, 0}, Claim::physical, {shadows_ignored}, along_the_sun, sharp),
         StressCase("fence", group, "wires get thinner than texels and froxels", "wire", "m", {0.12, 0.03, 0.008, 0.002},
-                   Claim::physical, {as_froxels, as_noise, sun_unseen, unseen}, fence, fine),
+                   Claim::physical, {as_froxels, as_noise, shadows_ignored}, fence, fine),
         StressCase("holed-sheet", group, "one hole in a sheet: whole, in pieces, turned, half turned, doubled", "mesh",
                    "", {0, 1, 2, 3, 4}, Claim::shadows, {}, holed, fine),
         StressCase("sun-in-a-face", group, "the sun lies in the plane of a face", "angle", "radians",
@@ -251,7 +248,7 @@ std::vector<StressCase> stress_shadows() {
         StressCase("stack", group, "several blockers in one place act as one", "blockers", "", {2, 3, 5},
                    Claim::shadows | Claim::noise_free, {}, one_blocker, {1e-3, "relative RMSE against one", stack_off}),
         StressCase("eye-in-shadow", group, "the camera is in a shadow", "below the blocker", "m", {3, 1, 0.3, 0.01},
-                   Claim::physical, {sun_unseen}, eye_in_shadow, sharp),
+                   Claim::physical, {shadows_ignored}, eye_in_shadow, sharp),
         StressCase("size", group, "shadows a thousand kilometers long", "blocker", "m", {1, 1e-3, 1e3, 1e6},
                    Claim::shadows, {}, long_shadow, sharp),
         StressCase("dark-room", group, "the sun does not get through thin walls", "wall", "m", {0.5, 0.1, 0.02, 0.005},
@@ -268,7 +265,7 @@ std::vector<StressCase> stress_shadows() {
         StressCase("cut-out", group, "a sheet with a hole in its texture", "hole", "", {0.5, 0.1, 0.02, 0.9},
                    Claim::shadows, {{&limitation::no_alpha_shadows}, as_froxels, as_noise}, cut_out),
         StressCase("shade-at-lamp", group, "a slit comes close to its lamp", "lamp to slit", "m", {1, 0.3, 0.03, 0.003},
-                   Claim::physical, {as_froxels, as_noise, unseen}, lamp_in_holes, fine),
+                   Claim::physical, {as_froxels, as_noise, shadows_ignored}, lamp_in_holes, fine),
         StressCase("short-rays", group, "rays that end where they start", "length", "m", {1e-5, 1e-9, 0},
                    Claim::along_rays, {}, short_rays, {1e-3, "most light scattered or absorbed", short_rays_off}),
     };

@@ -1,6 +1,5 @@
 // Depth of field, motion blur and matte objects.
 #include "measure/stress/authored.h"
-#include "modes/cone/limitations.h"
 #include "modes/froxel/limitations.h"
 #include "modes/lens_fog.h"
 #include "modes/light_filters.h"
@@ -15,10 +14,10 @@
 
 namespace tyndall {
 namespace {
-const std::vector<Excuse> excuses{
-    {&limitation::fog_through_middle},  {&limitation::shutter_moments},     {&limitation::few_steps_for_glow, 2},
-    {&limitation::coarse_shafts},       {&limitation::grainy_edges, 1.5},   {&limitation::no_shadows, 3},
-    {&limitation::sun_without_shadows}, {&limitation::blurred_filter, 0.5}, {&limitation::sampled_gobo, 0.5}};
+const std::vector<Excuse> excuses{{&limitation::fog_through_middle},    {&limitation::shutter_moments},
+                                  {&limitation::few_steps_for_glow, 2}, {&limitation::coarse_shafts},
+                                  {&limitation::grainy_edges, 1.5},     shadows_ignored,
+                                  {&limitation::blurred_filter, 0.5},   {&limitation::sampled_gobo, 0.5}};
 
 // --- lenses --------------------------------------------------------------------------------------------------------
 // A spot's beam two meters behind a post.

@@ -11,9 +11,7 @@
 
 namespace tyndall {
 namespace {
-// The limitation states an error that it measures on a few rays; other rays differ.
-double stated(const Limitation& limitation) { return 1.5 * limitation.amounts[0] / 100 + 0.02; }
-const std::vector<Excuse> excuses{{&limitation::mean_environment, 0, stated}};
+const std::vector<Excuse> excuses{{&limitation::mean_environment, 0, stated_error}};
 const Camera front = camera_from({0, 0.3f, 5}, vec3(0));
 const vec3 sunwards = glm::normalize(vec3(0.3f, 0.6f, -1));
 

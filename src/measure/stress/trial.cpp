@@ -255,6 +255,8 @@ double error_of_mean(Trial& trial) {
     return std::abs(mean_of(trial.render().inscatter) / mean_of(trial.truth().inscatter) - 1);
 }
 
+double stated_error(const Limitation& limitation) { return 1.5 * limitation.amounts[0] / 100 + 0.02; }
+
 double leak(Trial& trial) {
     StressScene open = trial.scene;
     open.snapshot.occluders = nullptr, open.snapshot.scene = nullptr;

@@ -2,6 +2,7 @@
 #pragma once
 #include "measure/stress/stress.h"
 #include "measure/verify/rays.h"
+#include "modes/cone/limitations.h"
 #include "modes/settings.h"
 #include "render/frame/frame.h"
 #include "scene/camera.h"
@@ -64,6 +65,10 @@ double leak(Trial& trial); // mean fog light relative to that of the same fog wi
 inline constexpr std::string_view to_truth = StressMeasure{}.criterion;
 double mean_of(const Image<vec3>& image);
 double max_of(const Image<vec3>& image);
+
+// The error that a limitation states in percent, with a margin: it is measured on a few rays, and others differ.
+double stated_error(const Limitation& limitation);
+inline constexpr Excuse shadows_ignored{&limitation::no_shadows, 0, stated_error}; // by cone
 
 // --- scenes ------------------------------------------------------------------------------------------------------
 constexpr ivec2 stress_size{49, 27}; // odd, so that the middle ray is the view direction

@@ -1,5 +1,6 @@
 #include "modes/cone/limitations.h"
 
+#include "integrate/lights/light_error.h"
 #include "modes/area_light_limitations.h"
 #include "modes/cone/cone.h"
 #include "modes/cone/settings.h"
@@ -10,41 +11,21 @@
 #include "modes/settings.h"
 #include "modes/shared_limitations.h"
 #include "scene/light.h"
-#include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
 #include "volume/medium.h"
 
 namespace tyndall {
 namespace {
-// Whether surfaces shadow fog that is in view.
-bool is_shadowed(const View& view, const Snapshot& snapshot, const Light& light) {
-    constexpr int points = 16; // on each ray
-    for (Ray& ray : probing_rays(view, snapshot)) {
-        Hits hits;
-        snapshot.occluders->closest({&ray, 1}, 0, hits);
-        ray.t_max = std::min(ray.t_max, hits.t[0]);
-        for (int i = 0; i < points; ++i) {
-            const vec3 point = ray.at(ray.t_max * (static_cast<float>(i) + 0.5f) / points);
-            const LightSample at = arrival(light, point);
-            if (max_component(at.irradiance) <= 0) continue;
-            if (shadow_casters(light, snapshot)->transmission({point, at.to_light, at.distance}, 0) < 1) return true;
-        }
-    }
-    return false;
-}
-
 void add_light(const View& view, const Snapshot& snapshot, const Light& light, const ConeSettings& settings,
                Limitations& limitations) {
     const auto add = [&](Severity severity, const LimitationKind& kind) {
         limitations.push_back({severity, &kind, Subject::light, light.name});
     };
     const bool sun = is_distant(light), spot = has_cone(light);
-    const bool shadows = shadow_casters(light, snapshot) != nullptr;
-    if (shadows && sun && is_shadowed(view, snapshot, light))
-        add(Severity::wrong, limitation::sun_without_shadows);
-    else if (shadows)
-        add(Severity::degraded, limitation::no_shadows);
+    constexpr double most = 100; // where none of its light is left
+    if (const double off = std::min(shadow_error(view, snapshot, light), most); off > 0)
+        limitations.push_back({severity_of(off), &limitation::no_shadows, Subject::light, light.name, {100 * off}});
     if (!sun && light.radius > 0) add(Severity::info, limitation::point_light_only);
     if (!sun && settings.attenuation != ConeAttenuation::inverse_square)
         add(Severity::degraded, limitation::unphysical_attenuation);

@@ -8,9 +8,8 @@ struct Snapshot;
 struct View;
 
 namespace limitation {
-inline constexpr LimitationKind sun_without_shadows{"sun_without_shadows",
-                                                    "shadows of surfaces are ignored: no shafts of sunlight"};
-inline constexpr LimitationKind no_shadows{"no_shadows", "shadows of surfaces are ignored"};
+inline constexpr LimitationKind no_shadows{
+    "no_shadows", "shadows of surfaces are ignored: an error of about {}% in its light in fog"};
 inline constexpr LimitationKind point_light_only{"point_light_only",
                                                  "treated as a point light; the radius only caps the brightness"};
 inline constexpr LimitationKind unphysical_attenuation{"unphysical_attenuation",

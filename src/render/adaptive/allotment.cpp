@@ -7,7 +7,6 @@
 
 namespace tyndall {
 namespace {
-constexpr int tile_side = 4;
 // A tile's variance counts as at least these shares of its neighbors' and of the image's mean: few samples may have
 // missed it.
 constexpr double beside_share = 1.0 / 16, image_share = 1.0 / 256;

@@ -8,7 +8,6 @@
 
 namespace tyndall {
 namespace {
-constexpr int tile_side = 4;
 constexpr uint32_t use_tiles = 0x9170u;
 
 TileChances tiles_between(ivec2 low, ivec2 high) {

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
+#include "base/io/file_hashes.h"
 #include "base/io/frames.h"
 #include "base/json/json_values.h"
 #include "job_schema.h"
@@ -10,7 +11,7 @@
 
 namespace tyndall {
 std::filesystem::path job_folder(const std::filesystem::path& folder) {
-    const std::filesystem::path path = std::filesystem::absolute(folder).lexically_normal();
+    const std::filesystem::path path = normal_path(folder);
     return path.has_filename() ? path : path.parent_path();
 }
 

@@ -1,5 +1,6 @@
 #include "render/farm/inputs.h"
 
+#include "base/io/file_hashes.h"
 #include "render/sequence/job.h"
 #include "scene/scene.h"
 
@@ -9,9 +10,7 @@ namespace tyndall {
 std::vector<std::filesystem::path> input_files(const Scene& scene, const std::vector<int>& frames,
                                                const RenderRequest& request) {
     std::set<std::filesystem::path> files;
-    const auto add = [&](const std::filesystem::path& file) {
-        files.insert(std::filesystem::absolute(file).lexically_normal());
-    };
+    const auto add = [&](const std::filesystem::path& file) { files.insert(normal_path(file)); };
     for (const InputFile& input : scene.inputs) add(input.path);
     for (const int frame : frames)
         for (const FrameFile& file : frame_files(scene, frame, request.missing, shutter_of(scene, request)))

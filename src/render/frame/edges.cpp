@@ -13,7 +13,6 @@
 
 namespace tyndall {
 namespace {
-constexpr int tile_side = 4;
 constexpr int fewest_samples = 4; // per pixel, for probing to pay off
 // Contrast, (max - min) / (max + min), at which a tile starts to take more samples, and at which it takes the most.
 constexpr float min_contrast = 0.15f, full_contrast = 0.6f;

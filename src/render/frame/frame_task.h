@@ -4,8 +4,6 @@
 #include "render/frame/samples.h"
 
 namespace tyndall {
-inline constexpr int tile_side = 4; // a tile's 16 rays are traced together
-
 // What all blocks of a frame share.
 struct FrameTask {
     std::shared_ptr<const Prepared> prepared;         // kept alive for the tracer

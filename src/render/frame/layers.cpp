@@ -1,6 +1,7 @@
 #include "render/frame/layers.h"
 
 #include "scene/scene.h"
+#include "trace/view.h"
 
 #include <algorithm>
 
@@ -90,7 +91,6 @@ void blend_layers(Layers& layers, const Layers& other, float share) {
 }
 
 void blend_layers(Layers& layers, const Layers& other, const TileShares& shares) {
-    constexpr int tile_side = 4;
     blend_all(layers, other, [&](ivec2 p) {
         const ivec2 tile = (layers.low + p) / tile_side - shares.low;
         return shares.shares.at(tile.x, tile.y);

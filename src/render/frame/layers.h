@@ -69,8 +69,8 @@ struct Integrator {
 // Error of multiple scattering from a grid against path tracing, relative to path tracing's mean; for color or
 // inscatter, whichever is worse.
 struct OrdersError {
-    double mean = 0; // of the image's mean: below 0 if it is darker than path tracing's
-    Noise pixels;    // root mean square over pixels
+    Noise mean;   // of the image's mean: below 0 if it is darker than path tracing's; the bound is of its magnitude
+    Noise pixels; // root mean square over pixels
 };
 
 struct FrameStats {

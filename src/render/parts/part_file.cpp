@@ -1,6 +1,7 @@
 #include "render/parts/part_file.h"
 
 #include "base/error.h"
+#include "base/io/file_hashes.h"
 #include "base/json/json_values.h"
 #include "base/text.h"
 #include "render/sequence/job.h"
@@ -34,16 +35,13 @@ std::string label(const Grouping& grouping) { return formatted("%d/%d", grouping
 // Adds the header attributes that a part has and its image does not.
 void add_attributes(const FramePart& part, const Grouping& grouping, const std::filesystem::path& file,
                     std::map<std::string, std::string>& attributes) {
-    const auto absolute = [](const std::filesystem::path& path) {
-        return std::filesystem::absolute(path).lexically_normal();
-    };
     attributes["tyndall:part"] = label(grouping);
     attributes["tyndall:partRange"] = range_text(part.range);
     attributes["tyndall:partLeaves"] = std::to_string(part.leaves);
     attributes["tyndall:partCovered"] = part.covered ? "1" : "0";
     if (part.colored) attributes["tyndall:partColored"] = "1";
     attributes["tyndall:planFile"] =
-        absolute(grouping.plan_file).lexically_relative(absolute(file).parent_path()).string();
+        normal_path(grouping.plan_file).lexically_relative(normal_path(file).parent_path()).string();
     const std::vector<std::string>& names = part.lights.names;
     attributes["tyndall:partLights"] =
         format_json(json_object({{"names", json_list(names, [](const std::string& name) { return Json(name); })},

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
+#include "base/io/file_hashes.h"
 #include "base/io/frames.h"
 #include "base/json/json_values.h"
 #include "base/text.h"
@@ -25,10 +26,7 @@ Json settings_json(const Settings& settings) {
 
 // The scene's path relative to the plan's folder.
 std::string scene_name(const std::filesystem::path& scene, const std::filesystem::path& plan) {
-    const auto absolute = [](const std::filesystem::path& path) {
-        return std::filesystem::absolute(path).lexically_normal();
-    };
-    return absolute(scene).lexically_relative(absolute(plan).parent_path()).string();
+    return normal_path(scene).lexically_relative(normal_path(plan).parent_path()).string();
 }
 
 Json error_json(const Noise& error) { return std::vector{error.error, error.bound}; }
@@ -118,8 +116,8 @@ RenderRequest request_of(const Json& json, const std::filesystem::path& file) {
     request.grouping.plan_file = file;
     if (const Json* integrator = json.find("integrator"))
         request.grouping.error.integrator = {error_of(*integrator), json.string_or("candidate", ""), request.settings};
-    if (const Json* orders = json.find("orders"))
-        request.grouping.error.orders = OrdersError{json.number_or("orders_mean", 0), error_of(*orders)};
+    const Json *orders = json.find("orders"), *orders_mean = json.find("orders_mean");
+    if (orders && orders_mean) request.grouping.error.orders = OrdersError{error_of(*orders_mean), error_of(*orders)};
     if (const Json* moments = json.find("moments")) request.grouping.error.moments = error_of(*moments);
     return request;
 }
@@ -170,7 +168,7 @@ void save_plan(const std::filesystem::path& file, const Scene& scene, const Save
     }
     if (const std::optional<OrdersError>& orders = error.orders) {
         members.emplace_back("orders", error_json(orders->pixels));
-        members.emplace_back("orders_mean", orders->mean);
+        members.emplace_back("orders_mean", error_json(orders->mean));
     }
     if (error.moments) members.emplace_back("moments", error_json(*error.moments));
     if (const std::optional<Shutter>& shutter = plan.request.shutter)

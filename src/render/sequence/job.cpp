@@ -104,14 +104,16 @@ Shutter shutter_of(const Scene& scene, const RenderRequest& request) {
     return shutter;
 }
 
+int frame_before(const Scene& scene, int frame, int back) {
+    return std::max(frame - back, std::min(scene.first_frame, frame));
+}
+
 FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int frame) {
     const Shutter shutter = shutter_of(scene, request);
     const int camera = find_camera(scene, request.camera);
     if (!moves_while_open(scene, camera, shutter)) return frame_moments(scene, frame, shutter, 1);
     const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
-    // A mode that is not chosen yet may be one that remembers.
-    const auto keeps_none = [&](const Mode& mode) { return mode.name == request.mode && !mode.uses_history; };
-    const bool keeps_images = std::ranges::none_of(modes(), keeps_none);
+    const bool keeps_images = request.mode_open || find_mode(request.mode).uses_history;
     const int finer = request.target_error > 0 ? 2 : 1; // the error left by half of them is part of the target error
     const int count = request.time_samples > 0 ? request.time_samples
                                                : auto_moments(scene, camera, size, frame, shutter, keeps_images, finer);

@@ -46,6 +46,7 @@ struct RenderRequest {
     std::string output; // pattern
     std::vector<int> frames;
     std::string mode = main_mode_name();
+    bool mode_open = false; // another mode may be chosen for the scene
     Quality quality = Quality::preview;
     Settings settings;   // quality and --set already applied
     std::string camera;  // empty = the scene's
@@ -84,6 +85,7 @@ struct RenderPlan {
     std::optional<double> exposure{};       // of PNGs, if it is measured
     std::shared_ptr<const Choice> main{};   // of the main mode for the first frame, if another mode was chosen
     double main_seconds = infinity;         // predicted for that image
+    const Mode* missed = nullptr;           // mode that the main one stands in for, as it missed the target
 };
 
 // The requested mode and settings. Throws Error (usage) for a mode that is not in the table.
@@ -103,6 +105,9 @@ bool wants_layer(const RenderRequest& request, std::string_view layer);
 
 // The shutter of the requested camera.
 Shutter shutter_of(const Scene& scene, const RenderRequest& request);
+
+// The frame that a history sees `back` frames before one: none is before the scene's first.
+int frame_before(const Scene& scene, int frame, int back);
 
 // The shutter moments of a frame. Throws Error for a camera that is not in the scene.
 FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int frame);

@@ -164,7 +164,9 @@ std::string frame_hash(const Scene& scene, const RenderRequest& request, const R
                        settings_text(plan.settings);
     text += "\nrate=" + number(scene.frame_rate) + "\ncamera=" + camera_text(view.camera) + "\n";
     text += request.exr.full_float ? "float\n" : "half\n";
-    text += scene_text(scene) + fog_text(scene, request, view.frame, files) + light_text(scene, seconds);
+    text += scene_text(scene) + light_text(scene, seconds);
+    for (int back = request.history; back >= 0; --back)
+        text += fog_text(scene, request, frame_before(scene, view.frame, back), files);
     if (!request.grouping.plan_hash.empty()) text += "plan=" + request.grouping.plan_hash + "\n";
     if (!request.unsaved.empty()) text += "edits=" + request.unsaved + "\n";
     return content_hash(text);
@@ -187,6 +189,7 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
     attributes["tyndall:nonFinite"] = std::to_string(stats.non_finite);
     if (stats.non_finite) attributes["tyndall:firstNonFinite"] = pair_text(stats.first_non_finite, ",");
     if (is_stylized(plan.settings.style) && honors_style(*plan.mode)) attributes["stylized"] = "1";
+    if (plan.missed) attributes["tyndall:plannedMode"] = plan.missed->name;
     if (view.shutter) attributes["tyndall:timeSamples"] = std::to_string(view.shutter->cameras.size());
     if (stats.noise) {
         attributes["tyndall:samples"] = std::to_string(stats.samples);
@@ -205,7 +208,8 @@ Provenance provenance_of(const Scene& scene, const RenderRequest& request, const
     if (stats.orders) {
         attributes["tyndall:ordersError"] = number(stats.orders->pixels.error);
         attributes["tyndall:ordersBound"] = number(stats.orders->pixels.bound);
-        attributes["tyndall:ordersMean"] = number(stats.orders->mean);
+        attributes["tyndall:ordersMean"] = number(stats.orders->mean.error);
+        attributes["tyndall:ordersMeanBound"] = number(stats.orders->mean.bound);
     }
     if (stats.moments_error) {
         attributes["tyndall:momentsError"] = number(stats.moments_error->error);
@@ -238,8 +242,8 @@ void read_noise(const std::map<std::string, std::string>& attributes, FrameStats
     if (integrator.error >= 0 && integrator.bound >= 0 && attributes.contains("tyndall:candidate"))
         stats.integrator = {integrator, attributes.at("tyndall:candidate"), {}};
     const Noise orders{value("tyndall:ordersError"), value("tyndall:ordersBound")};
-    if (orders.error >= 0 && orders.bound >= 0 && attributes.contains("tyndall:ordersMean"))
-        stats.orders = OrdersError{value("tyndall:ordersMean"), orders};
+    const Noise mean{value("tyndall:ordersMean"), value("tyndall:ordersMeanBound")};
+    if (orders.error >= 0 && orders.bound >= 0 && mean.bound >= 0) stats.orders = OrdersError{mean, orders};
     const Noise moments{value("tyndall:momentsError"), value("tyndall:momentsBound")};
     if (moments.error >= 0 && moments.bound >= 0) stats.moments_error = moments;
     stats.samples = static_cast<int>(std::clamp(value("tyndall:samples"), 0.0, 1e9));

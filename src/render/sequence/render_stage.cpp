@@ -23,11 +23,12 @@ double seconds_to_write(const RenderRequest& request, const View& view) {
     return 0.01 + pixels * (request.png ? 1e-6 : 5e-7);
 }
 
-// Seconds until the next frame has to be rendered; 0 if there is no limit. Includes what earlier frames left over.
+// Seconds until the next frame has to be rendered; 0 if there is no limit. Includes what earlier frames left over;
+// those that were kept add the time they took.
 double seconds_left(const Pipeline& pipeline, const View& view) {
     const RenderRequest& request = pipeline.request;
     if (request.time_budget == 0) return 0;
-    const double end = request.started + request.time_budget * (pipeline.rendered + 1);
+    const double end = request.started + request.time_budget * (pipeline.rendered + 1) + pipeline.kept_seconds;
     constexpr double safe = 0.96; // margin for delays of the process
     return std::max(safe * (end - steady_seconds() - seconds_to_write(request, view)), 1e-3);
 }
@@ -36,11 +37,11 @@ double seconds_left(const Pipeline& pipeline, const View& view) {
 // scene's first frame, time stands still. Each frame shares data with the one before; the first shares what the
 // sequence's previous frame kept.
 void warm_up(const Pipeline& pipeline, FrameJob& work, History& history) {
-    const int frame = work.report.frame, first = std::min(pipeline.scene.first_frame, frame);
+    const int frame = work.report.frame;
     Snapshot previous = work.snapshot;
     previous.cache = work.snapshot.previous_cache;
     for (int back = pipeline.request.history; back > 0 && !pipeline.cancel; --back) {
-        const int earlier = std::max(frame - back, first);
+        const int earlier = frame_before(pipeline.scene, frame, back);
         Snapshot snapshot =
             make_snapshot(pipeline.scene, moment_of(pipeline.scene, earlier), &previous, pipeline.request.missing);
         View view = view_of(pipeline.scene, pipeline.request, pipeline.plan.settings, earlier);
@@ -72,6 +73,7 @@ void render_by_main_mode(Pipeline& pipeline, FrameJob& work, FrameOptions option
             std::string(main_mode().name));
     work.report.mode = main_mode().name;
     work.by = RenderPlan{&main_mode(), *plan.wanted, plan.certificate, nullptr, plan.wanted};
+    work.by->missed = plan.mode;
     Goal goal{pipeline.request.target_error, 0, pipeline.request.quality};
     if (work.index == 0) goal.choice = plan.main;
     options.history = nullptr;

@@ -33,7 +33,8 @@ Json frame_json(const FrameReport& frame) {
         json.members.emplace_back("integrator_bound", frame.stats.integrator->error.bound);
     }
     if (frame.stats.orders) {
-        json.members.emplace_back("orders_mean", frame.stats.orders->mean);
+        json.members.emplace_back("orders_mean", frame.stats.orders->mean.error);
+        json.members.emplace_back("orders_mean_bound", frame.stats.orders->mean.bound);
         json.members.emplace_back("orders_error", frame.stats.orders->pixels.error);
         json.members.emplace_back("orders_bound", frame.stats.orders->pixels.bound);
     }

@@ -62,6 +62,11 @@ const VdbGridInfo* density_of(const VdbInfo& info) {
 }
 }
 
+bool states_extinction(const VdbInfo& info) {
+    return std::ranges::any_of(info.metadata,
+                               [](const auto& entry) { return entry.first == "tyndall_extinction_per_m"; });
+}
+
 float default_extinction(const VdbGridInfo& fog) {
     const Box voxels{vec3(fog.active_low) - 0.5f, vec3(fog.active_high) + 0.5f};
     const float diagonal = std::max(glm::length(transform(mat4(fog.index_to_world), voxels).size()), 1e-3f);
@@ -87,8 +92,9 @@ std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {
     if (flame) grids.push_back(member("flame", quote_json(flame->key)));
     if (emission) grids.push_back(member("emission", color_name(*emission)));
     if (velocity != info.grids.end()) grids.push_back(member("velocity", color_name(*velocity)));
-    std::string text = "{" + member("type", "\"vdb\"") + ", " + member("file", quote_json(vdb.filename().string())) +
-                       ", " + member("extinction", dims ? digits(default_extinction(*density)) : "0");
+    std::string text =
+        "{" + member("type", "\"vdb\"") + ", " + member("file", quote_json(vdb.filename().string())) +
+        (states_extinction(info) ? "" : ", " + member("extinction", dims ? digits(default_extinction(*density)) : "0"));
     if (!grids.empty()) text += ", " + member("grids", "{" + joined(grids, ", ") + "}");
     if (temperature) text += ", " + member("blackbody", "{\"convention\": \"kelvin\", \"emission_scale\": 1}");
     return text + "}";

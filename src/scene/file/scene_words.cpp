@@ -46,9 +46,8 @@ std::string volume_scene_text(const std::filesystem::path& vdb) {
 
     // If the file states no extinction, 2 % of the light passes along the longest path at maximum density.
     std::string optics;
-    const bool known =
-        std::ranges::any_of(info.metadata, [](const auto& entry) { return entry.first == "tyndall_extinction_per_m"; });
-    if (!known && fog->maximum > 0) optics = ", \"extinction\": " + json_number(default_extinction(*fog));
+    if (!states_extinction(info) && fog->maximum > 0)
+        optics = ", \"extinction\": " + json_number(default_extinction(*fog));
     return "{\n  \"tyndall\": 1,\n  \"camera\": " + camera_text(stand_in.cameras[0]) + ",\n  \"lights\": [\n    " +
            sun_text(stand_in.lights[0]) + "\n  ],\n  \"ambient\": " + json_number(stand_in.ambient.at(0).x) +
            ",\n  \"media\": [\n    { \"name\": " + quote_json(vdb.stem().string()) +

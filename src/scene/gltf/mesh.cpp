@@ -189,10 +189,13 @@ void compact(const Vertices& vertices, Mesh& mesh) {
                     const float* color = &vertices.colors[from * vertices.color_parts];
                     mesh.colors.push_back({finite_or(color[0], 1), finite_or(color[1], 1), finite_or(color[2], 1)});
                     mesh.colors.back() = glm::clamp(mesh.colors.back(), vec3(0), vec3(1e6f));
+                    if (vertices.color_parts == 4)
+                        mesh.alphas.push_back(std::clamp(finite_or(color[3], 1), 0.0f, 1.0f));
                 }
             }
             triangle[corner] = location[from];
         }
+    if (std::ranges::all_of(mesh.alphas, [](float alpha) { return alpha == 1; })) mesh.alphas.clear();
     if (!mesh.normals.empty()) mend_normals(mesh);
 }
 

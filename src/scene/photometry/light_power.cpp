@@ -1,5 +1,6 @@
 #include "scene/photometry/light_power.h"
 
+#include "scene/light.h"
 #include "scene/photometry/ies_profile.h"
 #include "scene/scene.h"
 #include "volume/emission/blackbody.h"
@@ -21,7 +22,7 @@ double candela_per_lumen(const LightSource& light, double seconds) {
 double cone_lumens(double inner, double outer) {
     // As in cone_falloff(): ((cosine - edge) / width)² up to the uniform part.
     const double whole = 2 * std::sin(0.5 * outer) * std::sin(0.5 * outer); // 1 - cos(outer)
-    const double width = std::max(std::cos(inner) - std::cos(outer), std::clamp(0.25 * whole, 1e-12, 1e-6));
+    const double width = std::max(std::cos(inner) - std::cos(outer), min_cone_edge(outer));
     const double even = std::max(whole - width, 0.0), soft = std::min(whole, width);
     return 2 * double{pi} * (even + soft * soft * soft / (3 * width * width));
 }

@@ -118,13 +118,13 @@ struct Pilot {
 
     // Merges each 2×2 strata into one.
     void coarsen() {
-        const size_t lights = squares.size() / static_cast<size_t>(side * side);
+        const size_t count = squares.size() / static_cast<size_t>(side * side);
         const int half = side / 2;
-        std::vector<double> merged(lights * static_cast<size_t>(half * half));
+        std::vector<double> merged(count * static_cast<size_t>(half * half));
         for (size_t i = 0; i < squares.size(); ++i) {
             const int stratum = static_cast<int>(i % static_cast<size_t>(side * side));
-            const size_t light = i / static_cast<size_t>(side * side);
-            merged[light * static_cast<size_t>(half * half) +
+            const size_t square = i / static_cast<size_t>(side * side);
+            merged[square * static_cast<size_t>(half * half) +
                    static_cast<size_t>(stratum / side / 2 * half + stratum % side / 2)] += squares[i];
         }
         squares = std::move(merged), side = half;

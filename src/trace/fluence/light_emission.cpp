@@ -2,7 +2,9 @@
 #include "scene/area_shape.h"
 #include "scene/light.h"
 #include "scene/light_filter.h"
+#include "trace/fluence/light_paths.h"
 #include "trace/lights/environment.h"
+#include "trace/snapshot.h"
 
 namespace tyndall {
 namespace {
@@ -17,15 +19,11 @@ vec3 face_place(const AreaShape& face, vec2 u) {
     return face.center + place.x * face.right + place.y * face.up;
 }
 
-vec3 corner(const Box& box, int i) {
-    return {i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z};
-}
-
 void fit_sun(const Box& reach, LightSquare& square) {
     square.low = vec2(infinity), square.high = vec2(-infinity), square.start = infinity;
     float end = -infinity;
     for (int i = 0; i < 8; ++i) {
-        const vec3 point = corner(reach, i);
+        const vec3 point = reach.corner(i);
         const vec2 at(glm::dot(point, square.across), glm::dot(point, square.up));
         square.low = glm::min(square.low, at), square.high = glm::max(square.high, at);
         square.start = std::min(square.start, glm::dot(point, square.axis));
@@ -99,10 +97,44 @@ LightSquare square_of(const std::shared_ptr<const Environment>& environment, con
 }
 }
 
+namespace {
+// Whether the line of a ray of the same light is one of the square's.
+bool brings(const LightSquare& square, const Ray& ray) {
+    if (square.environment) {
+        const vec3 off = ray.origin - square.center;
+        return glm::length(off - glm::dot(off, ray.direction) * ray.direction) < square.radius;
+    }
+    const float until = square.start - glm::dot(ray.origin, square.axis);
+    const vec3 point = ray.at(until / glm::dot(ray.direction, square.axis));
+    const vec2 at(glm::dot(point, square.across), glm::dot(point, square.up));
+    return glm::all(glm::greaterThanEqual(at, square.low)) && glm::all(glm::lessThan(at, square.high));
+}
+
+// Adds a light's square around the box; for distant light also one around much smaller fog, with half of the paths.
+template<class L>
+void add_squares(const L& light, const Box& reach, const Box& fog, std::vector<LightSquare>& squares) {
+    constexpr double much_smaller = 0.5, share_of_fog = 0.5;
+    LightSquare whole = square_of(light, reach);
+    whole.weight = luminance(whole.power);
+    if (is_distant(*whole.light) && !fog.empty()) {
+        LightSquare around_fog = square_of(light, fog);
+        if (luminance(around_fog.power) < much_smaller * whole.weight) {
+            around_fog.back = whole.environment ? glm::distance(around_fog.center, whole.center) + whole.radius
+                                                : around_fog.start - whole.start;
+            around_fog.weight = share_of_fog * whole.weight, whole.weight -= around_fog.weight;
+            whole.left_out = std::make_shared<const LightSquare>(around_fog);
+            squares.push_back(std::move(around_fog));
+        }
+    }
+    squares.push_back(std::move(whole));
+}
+}
+
 std::vector<LightSquare> squares_of(const Snapshot& snapshot, const Box& reach) {
     std::vector<LightSquare> squares;
-    for (const Light& light : snapshot.lights) squares.push_back(square_of(light, reach));
-    if (snapshot.environment) squares.push_back(square_of(snapshot.environment, reach));
+    const Box fog = fog_bounds(snapshot, reach);
+    for (const Light& light : snapshot.lights) add_squares(light, reach, fog, squares);
+    if (snapshot.environment) add_squares(snapshot.environment, reach, fog, squares);
     return squares;
 }
 
@@ -147,12 +179,12 @@ Ray LightSquare::ray(vec2 place, vec2 soft) const {
         vec3 x, y;
         make_frame(from, x, y);
         const vec2 at = on_disc(soft);
-        return {center + radius * (from + at.x * x + at.y * y), -from};
+        return {center + radius * (from + at.x * x + at.y * y) + back * from, -from};
     }
     if (is_distant(*light)) {
         const vec2 at = low + place * (high - low), disc = on_disc(soft) * std::tan(light->angle);
         const vec3 direction = light->angle > 0 ? glm::normalize(axis + disc.x * across + disc.y * up) : axis;
-        return {at.x * across + at.y * up + start * axis, direction};
+        return {at.x * across + at.y * up + start * axis - back / glm::dot(direction, axis) * direction, direction};
     }
     return local_ray(*this, place, soft);
 }
@@ -176,6 +208,7 @@ float share_across(const Light& light, const Ray& ray) {
 
 vec3 LightSquare::share(const Ray& ray) const {
     const vec3 direction = ray.direction;
+    if (left_out && brings(*left_out, ray)) return vec3(0);
     if (environment) {
         const float density = environment_density(*environment, -direction);
         if (!(density > 0)) return vec3(0);

@@ -34,6 +34,11 @@ struct LightSquare {
     // Environment: a direction sampled by radiance, and the disc perpendicular to it that covers the box.
     std::shared_ptr<const Environment> environment; // null for other lights
     std::shared_ptr<const Light> as_light;          // its scales, shadows and links; `light` points here
+    // Distant light has two squares where surfaces reach much further than the fog: one around the fog, whose rays
+    // start this many meters further back, in front of the box, and one around the box that leaves those rays out.
+    float back = 0;
+    std::shared_ptr<const LightSquare> left_out;
+    double weight = 0; // share of the paths, relative to other squares
 
     // The ray at a point of the unit square; `soft` chooses a point of a soft light.
     Ray ray(vec2 place, vec2 soft) const;
@@ -41,6 +46,6 @@ struct LightSquare {
     vec3 share(const Ray& ray) const;
 };
 
-// Squares of all lights of the snapshot, in their order, then of its environment.
+// Squares of all lights of the snapshot for a box, in their order, then of its environment.
 std::vector<LightSquare> squares_of(const Snapshot& snapshot, const Box& reach);
 }

@@ -22,7 +22,7 @@ struct LightPath {
     Ray ray;
     vec3 light{0}; // power at the light, over the path's probability
     vec3 throughput{1};
-    int light_index = 0, order = 0, segments = 0;
+    int square = 0, order = 0, segments = 0;
     size_t stratum = 0;
     float recorded = 0; // Σ power · length of the recorded segments
     bool alive = false;
@@ -56,8 +56,8 @@ LightPath start(const LightTracing& tracing, int64_t index, int64_t total) {
     if (!(chance > 0)) return path;
 
     const int side = tracing.strata.side, count = side * side, stratum = static_cast<int>(path.stratum) % count;
-    path.light_index = static_cast<int>(path.stratum) / count;
-    const LightSquare& square = tracing.squares[static_cast<size_t>(path.light_index)];
+    path.square = static_cast<int>(path.stratum) / count;
+    const LightSquare& square = tracing.squares[static_cast<size_t>(path.square)];
     const vec2 in_square = (vec2(stratum % side, stratum / side) + path.pair()) / static_cast<float>(side);
     path.ray = square.ray(in_square, path.pair());
     const Interval<float> inside = clip(tracing.rules.reach, path.ray.origin, path.ray.direction, {0, infinity});
@@ -84,7 +84,7 @@ void record(const LightTracing& tracing, LightPath& path, float length) {
 
 // Attenuation by the light's range, for light straight from it.
 float range_attenuation(const LightTracing& tracing, const LightPath& path, vec3 point) {
-    const Light& light = *tracing.squares[static_cast<size_t>(path.light_index)].light;
+    const Light& light = *tracing.squares[static_cast<size_t>(path.square)].light;
     return is_distant(light) ? 1 : range_window(glm::length(point - light.position), light.range);
 }
 
@@ -101,7 +101,7 @@ void continue_path(const LightTracing& tracing, LightPath& path, Ray ray, vec3 s
 
 void scatter(const LightTracing& tracing, LightPath& path, const Optics& optics, float distance) {
     const vec3 point = path.ray.at(distance);
-    const Light& light = *tracing.squares[static_cast<size_t>(path.light_index)].light;
+    const Light& light = *tracing.squares[static_cast<size_t>(path.square)].light;
     vec3 share = albedo_at(optics, point);
     if (path.order == 0) share *= light.volume_scale * range_attenuation(tracing, path, point);
     tracing.result.first_scatterings += path.order == 0;
@@ -113,7 +113,7 @@ void scatter(const LightTracing& tracing, LightPath& path, const Optics& optics,
 // Lambertian reflection, or passage. Light from a source that the surface does not shadow is both transmitted and
 // reflected, each in half of the paths; light that is not linked to the surface is not reflected.
 void hit_surface(const LightTracing& tracing, LightPath& path, const SurfacePoint& surface, float distance) {
-    const Light& light = *tracing.squares[static_cast<size_t>(path.light_index)].light;
+    const Light& light = *tracing.squares[static_cast<size_t>(path.square)].light;
     const bool lit = path.order > 0 || is_lit(light, tracing.snapshot, surface.instance);
     const bool through = path.order == 0 && !shadows_light(light, tracing.snapshot, surface.instance);
     const float reflecting = !through ? surface.alpha : lit ? 0.5f : 0.0f;
@@ -217,8 +217,7 @@ RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side) {
     RayStrata strata{side, {}};
     double sum = 0;
     for (const LightSquare& square : squares_of(snapshot, reach))
-        for (int i = 0; i < side * side; ++i)
-            strata.cumulative.push_back(sum += luminance(square.power) / (side * side));
+        for (int i = 0; i < side * side; ++i) strata.cumulative.push_back(sum += square.weight / (side * side));
     for (double& each : strata.cumulative) each /= sum;
     return strata;
 }

@@ -23,13 +23,13 @@ struct LightPathRules {
     uint32_t seed = 0;
 };
 
-// All rays of the lights into a box: a square per light, each divided into as many strata.
+// All rays of the lights into a box: their squares, each divided into as many strata.
 struct RayStrata {
     int side = 1;                   // strata along each side of a light's square
-    std::vector<double> cumulative; // probability of the strata up to and including each: [light·side² + stratum]
+    std::vector<double> cumulative; // probability of the strata up to and including each: [square·side² + stratum]
 };
 
-// Probabilities proportional to the power of the lights, uniform over each square.
+// Probabilities by the weights of the squares (proportional to the power of the lights), uniform over each square.
 RayStrata even_strata(const Snapshot& snapshot, const Box& reach, int side);
 
 // Whether the snapshot has lights or an environment.

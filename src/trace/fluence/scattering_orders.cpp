@@ -52,7 +52,9 @@ ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths, uint32_t see
         once += result.scattered_once, more += result.scattered_more;
         seen += result.first_scatterings;
     }
-    if (!(once > 0)) return more > 0 ? ScatteringRatio{infinity, 0, infinity} : ScatteringRatio{};
+    const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
+    const double most = surfaces ? infinity : truncation_bound(snapshot, 1);
+    if (!(once > 0)) return {more > 0 ? infinity : 0, 0, truncation_bound(snapshot, 1) > 0 ? most : 0}; // no path hit
     const double ratio = more / once;
     for (const LightPathResult& result : results) {
         const double residual = result.scattered_more - ratio * result.scattered_once;
@@ -62,8 +64,7 @@ ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths, uint32_t see
     const double spread = student * std::sqrt(squares * batches / (batches - 1.0)) / once;
     const double unseen = 3 / static_cast<double>(seen); // the rule of three: 95 % bound if no event was seen
     const double high = ratio + std::max(spread, unseen);
-    const bool surfaces = snapshot.occluders && !snapshot.occluders->empty();
-    return {ratio, std::max(0.0, ratio - spread), surfaces ? high : std::min(high, truncation_bound(snapshot, 1))};
+    return {ratio, std::max(0.0, ratio - spread), std::min(high, most)};
 }
 
 double truncation_bound(const Snapshot& snapshot, int orders) {

@@ -20,7 +20,8 @@ double multiple_over_single(double optical_radius, double albedo);
 // high for flat boxes. Infinite for unbounded fog without absorption.
 double multiple_over_single(const Medium& medium);
 
-// Measured in a scene by tracing light paths, surfaces included. 0 if no light reaches the fog.
+// Measured in a scene by tracing light paths, surfaces included. 0 without lights; if no path meets the fog, `high` is
+// what truncation_bound() allows.
 ScatteringRatio measured_ratio(const Snapshot& snapshot, int paths = 8192, uint32_t seed = 0);
 
 // Bound on the light missing without orders above N = `orders`, relative to the largest source of order 1: q^N/(1 - q)

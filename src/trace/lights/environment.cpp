@@ -156,10 +156,8 @@ std::shared_ptr<const Environment> environment_at(const Scene& scene, const Mome
         return source.intensity.at(seconds) * std::exp2(source.exposure.at(seconds));
     };
     environment->scale = vec3(mean_brightness(moment, scale));
-    environment->volume_scale =
-        mean_brightness(moment, [&](double seconds) { return source.volume_scale.at(seconds); });
-    environment->surface_scale =
-        mean_brightness(moment, [&](double seconds) { return source.surface_scale.at(seconds); });
+    environment->volume_scale = mean_factor(moment, source.volume_scale, scale);
+    environment->surface_scale = mean_factor(moment, source.surface_scale, scale);
     environment->shadows = source.shadows, environment->casters = links.x, environment->lit = links.y;
     if (!is_finite(environment->mean()))
         refuse(scene.file.string(), named("light", source.name) + ": its radiance overflows");

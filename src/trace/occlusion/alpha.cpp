@@ -27,8 +27,10 @@ void ShadowContext::forget() {
 float OccluderGeometry::opacity(uint32_t triangle, float u, float v) const {
     if (!masks() && !blends()) return 1;
     float alpha = material->alpha;
+    const glm::uvec3 corners = mesh->triangles[triangle];
+    if (!mesh->alphas.empty()) alpha *= interpolated(mesh->alphas, corners, u, v);
     if (base_texture && !mesh->uvs.empty())
-        alpha *= sample_alpha(*base_texture, interpolated(mesh->uvs, mesh->triangles[triangle], u, v));
+        alpha *= sample_alpha(*base_texture, interpolated(mesh->uvs, corners, u, v));
     return masks() ? (alpha >= material->alpha_cutoff ? 1.0f : 0.0f) : std::clamp(alpha, 0.0f, 1.0f);
 }
 

@@ -38,7 +38,9 @@ struct OccluderGeometry {
     bool masks() const { return material && material->alpha_mode == AlphaMode::mask; }
     bool blends() const { return material && material->alpha_mode == AlphaMode::blend; }
     // Whether light may pass through: masks, and blended surfaces that are not fully opaque.
-    bool passes_light() const { return masks() || (blends() && (base_texture || material->alpha < 1)); }
+    bool passes_light() const {
+        return masks() || (blends() && (base_texture || material->alpha < 1 || !mesh->alphas.empty()));
+    }
     const std::vector<vec3>& normals() const { return posed_normals.empty() ? mesh->normals : posed_normals; }
     // The triangles that Embree has: all of the mesh, or the valid ones.
     const std::vector<glm::uvec3>& traced() const { return left_out ? kept : mesh->triangles; }

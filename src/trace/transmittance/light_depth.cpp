@@ -66,11 +66,20 @@ CacheKey depth_key(std::span<const Medium* const> bricks, const Light& light, in
     return key;
 }
 
+// Bounds of the fog that may scatter light, as far as it is within the scene's.
+Box scattering_bounds(const Snapshot& snapshot) {
+    Box fog;
+    for (const Medium& medium : snapshot.media)
+        if (!only_emits(medium.optics)) fog.grow(medium.world_bounds);
+    return {glm::max(fog.low, snapshot.bounds.low), glm::min(fog.high, snapshot.bounds.high)};
+}
+
 LightDepthFroxels cached_froxels(const Snapshot& snapshot, std::span<const Medium* const> bricks, const Light& light,
                                  int resolution, const View& view) {
     CacheKey key = depth_key(bricks, light, resolution);
-    return *cached(snapshot, "light froxels", std::move(key.add(view).add(snapshot.bounds)), [&] {
-        LightDepthFroxels froxels = fitted_froxels(view, snapshot.bounds, resolution);
+    const Box fog = scattering_bounds(snapshot);
+    return *cached(snapshot, "light froxels", std::move(key.add(view).add(fog)), [&] {
+        LightDepthFroxels froxels = fitted_froxels(view, fog, resolution);
         if (froxels.size.x > 0) fill_froxels(bricks, light, froxels);
         return froxels;
     });

@@ -28,6 +28,7 @@ void load(Painter& painter, const Request& request) {
         painter.snapshot.notes.clear();
     } else {
         if (!same_scene) painter.history = {};
+        if (same_scene && !same_edits) set_extent(*request.scene, painter.snapshot);
         painter.store.begin(request.scene, request.missing);
         if (!same_edits) painter.store.clear();
         if (same_files && same_edits) painter.store.put(painter.snapshot);

@@ -33,8 +33,10 @@ void save_picture(const SaveJob& job, const Snapshot* previous, std::atomic<bool
     check_job(*request.scene, render, *plan.mode, places);
     render.camera = job.camera;
 
-    const Snapshot snapshot =
-        make_snapshot(*request.scene, moment_of(*request.scene, request.frame), previous, request.missing);
+    Snapshot known;
+    if (previous) known = *previous, set_extent(*request.scene, known); // of the scene as edited
+    const Snapshot snapshot = make_snapshot(*request.scene, moment_of(*request.scene, request.frame),
+                                            previous ? &known : nullptr, request.missing);
     FrameStats stats;
     FrameOptions options;
     options.cancel = &cancel, options.progress = progress;

@@ -1,4 +1,5 @@
 """What `tyndall info` says about files whose content is known."""
+import json
 import math
 import unittest
 
@@ -26,6 +27,7 @@ class Info(ProgramTest):
         self.assertEqual((report["kind"], report["file_version"]), ("vdb", 224))
         self.assertEqual(report["metadata"]["tyndall_frame"], "7")
         self.assertEqual(report["metadata"]["tyndall_extinction_per_m"], "0.25")
+        self.assertNotIn("extinction", json.loads(report["scene_medium"]), "a scene takes the file's")
         [grid] = report["grids"]
         self.assertEqual((grid["name"], grid["type"], grid["class"]), ("density", "float", "fog volume"))
         self.assertTrue(grid["usable"])

@@ -111,6 +111,16 @@ class Resume(Sequence):
         self.succeed(*self.render("out", "--resume"))
         self.assertNotEqual(first.read_bytes(), before)
 
+    def test_what_remembers_fog_is_rendered_again_with_it(self):
+        self.succeed(*self.bake())
+        command = self.render("out", "--resume", "--json", "--mode", "froxel", "--history", "1")
+        kept = lambda: [frame["kept"] for frame in json.loads(self.succeed(*command).stdout)["frames"]]
+        kept()
+        self.assertEqual(kept(), [True, True, True])
+        self.write("recipe.json", recipe(density={"threshold": 0.3, "gain": 2}))
+        self.succeed("bake", self.recipe, "-o", self.path("fog/fog.####.vdb"), "--frames", "1")
+        self.assertEqual(kept(), [False, False, True])
+
     def test_bakes_are_resumed_by_content(self):
         self.succeed(*self.bake())
         before = self.content("fog")

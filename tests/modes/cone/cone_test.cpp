@@ -272,6 +272,25 @@ TEST(Cone, NamesWhatItDoesNotSee) {
     EXPECT_TRUE(has_limitation(mode.limitations({}, snapshot, settings), limitation::unphysical_attenuation));
 }
 
+// What is stated is what leaving out shadows does to the image.
+TEST(Cone, StatesTheErrorOfMissingShadows) {
+    const Box fog{vec3(-3, 0, -3), vec3(3, 3, 3)};
+    for (const float edge : {-0.5f, 0.0f, 1.0f, 2.5f})
+        for (const Light& light : {sun_light({0, -1, 0}), spot({0, 4, 0}, {0, -1, 0}, 0, 40)}) {
+            SCOPED_TRACE(edge);
+            const TestScene scene = make_scene({homogeneous_medium(0.1f, fog)}, {light}, {roof(edge, 3.5f)});
+            const View view = view_of({0, 1.5f, 9}, {0, 1.5f, 0}, {64, 36});
+            const std::vector<Ray> rays = pixel_rays(view, scene.snapshot);
+            const double error = relative_rmse(run_mode("cone", view, scene.snapshot, Settings{}, rays),
+                                               run_mode("march", view, scene.snapshot, exact_settings(), rays));
+            const Limitations told = find_mode("cone").limitations(view, scene.snapshot, Settings{});
+            const auto found =
+                std::ranges::find_if(told, [](const Limitation& one) { return one.is(limitation::no_shadows); });
+            const double stated = found == told.end() ? 0 : found->amounts[0] / 100;
+            EXPECT_NEAR(stated, std::min(error, 100.0), (error < 1 ? 0.15 : 0.5) * stated + 0.02);
+        }
+}
+
 TEST(GaussLegendre, IsExactForPolynomials) {
     for (int n = 1; n <= max_gauss_nodes; ++n)
         for (const int power : {0, 1, 2 * n - 1}) {

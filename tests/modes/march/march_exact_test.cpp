@@ -82,6 +82,23 @@ TEST(MarchExact, SpotWithRangeAndEdgeMatchesQuadrature) {
     EXPECT_NEAR(marched(stage.snapshot, exact_settings(), ray).radiance.x / expected, 1, 1e-6);
 }
 
+TEST(MarchExact, NarrowSpotsAreAsBrightAsWide) {
+    // Down to the narrowest cone, along its axis: as if the light shone all around.
+    const Ray ray{{0, 0, 0}, {0, 1, 0}, 2};
+    const auto light_of = [&](const Light& light) {
+        const TestScene stage = make_scene({homogeneous_medium(0.2f)}, {light}, {});
+        return double(marched(stage.snapshot, exact_settings(), ray).radiance.x);
+    };
+    const double all_around = light_of(point_light({0, 3, 0}, 40));
+    for (const float degrees : {0.05f, 0.07f, 0.2f, 5.0f})
+        for (const float inner : {0.0f, 1.0f})
+            EXPECT_NEAR(
+                light_of(spot_light({0, 3, 0}, {0, -1, 0}, 40, inner * glm::radians(degrees), glm::radians(degrees))) /
+                    all_around,
+                1, 1e-4)
+                << degrees;
+}
+
 TEST(MarchExact, RayThroughTheLightItself) {
     // Inside 0.1 mm the inverse square law is held: s/(4π)·(2·∫ from 1e-4 + 2·1e-4/1e-8), with e^(-s(t+r)) in thin fog.
     const double s = 1e-3f, reach = Light{}.core;

@@ -258,6 +258,23 @@ TEST(ShadowMapMarch, LimitationsNameWhatMapsCannotDo) {
     EXPECT_EQ(run(box.snapshot, settings, ray).validity, 1);
 }
 
+TEST(ShadowMapMarch, LimitationsKnowHowFarTheFogReaches) {
+    // A plume of two meters, beside the middle of the image, in haze of sixty: steps are those of the haze.
+    Snapshot snapshot = snapshot_of(
+        {homogeneous_medium(0.001f, {vec3(-30), vec3(30)}), homogeneous_medium(10, {vec3(-4, -1, -1), vec3(-2, 1, 1)})},
+        {sun_light({0, -1, 0})});
+    snapshot.bounds = snapshot.media[0].world_bounds;
+    Settings settings;
+    settings.of<ShadowMapSettings>().steps = 24;
+    const Limitations told =
+        find_mode("shadow-map").limitations(view_of({0, 0, 12}, vec3(0), {64, 36}), snapshot, settings);
+    const auto deep = std::ranges::find_if(told, [](const Limitation& one) { return one.is(limitation::deep_steps); });
+    ASSERT_NE(deep, told.end());
+    EXPECT_EQ(deep->severity, Severity::wrong);
+    EXPECT_GT(deep->amounts[1], 42.0 / 24);
+    EXPECT_NEAR(deep->amounts[0], 10 * std::min(deep->amounts[1], 2.0), 3);
+}
+
 TEST(ShadowMapMarch, SameBitsOnAnyThreads) {
     const HalfShadowed box(lamp_above());
     const std::vector<Ray> rays = pixel_rays();

@@ -94,6 +94,7 @@ TEST(Gltf, IntegersInterleavedAndSparse) {
     EXPECT_EQ(mesh.uvs[2], vec2(0, 1));
     EXPECT_EQ(mesh.colors[1], vec3(0, 1, 0));
     EXPECT_FLOAT_EQ(mesh.colors[2].z, 0.2f);
+    EXPECT_EQ(mesh.alphas, (std::vector<float>{1, 1, 0}));
     EXPECT_EQ(mesh.normals[1], vec3(1, 0, 0));
     EXPECT_NEAR(glm::length(mesh.normals[0]), 1, 1e-6) << "a normal of length 0 is replaced";
 }

@@ -37,6 +37,21 @@ TEST(OccludersAlpha, BlendSheetsMultiply) {
     expect_transmission(scene, 0.3f, 0.1f, 0);
 }
 
+TEST(OccludersAlpha, VerticesFadeBlendAndCutMasks) {
+    Scene scene;
+    scene.materials = {blend_material(1), blend_material(0.5f), blend_material(1)};
+    scene.materials[2].alpha_mode = AlphaMode::mask;
+    // From 0 at x = -1 to 1 at x = 1, whichever corner is where.
+    for (const auto& [material, expected] : {std::pair{0, 0.25f}, {1, 0.625f}, {2, 0.0f}, {-1, 0.0f}}) {
+        scene.meshes.clear(), scene.instances.clear();
+        Mesh mesh = sheet(-1, material);
+        for (const vec3& position : mesh.positions) mesh.alphas.push_back(0.5f + 0.5f * position.x);
+        add_mesh(scene, mesh);
+        expect_transmission(scene, 0.5f, 0.1f, expected);
+        if (material == 2) expect_transmission(scene, -0.5f, 0.1f, 1);
+    }
+}
+
 TEST(OccludersAlpha, WhatIsOpaqueCanBeLeftOut) {
     Scene scene;
     scene.materials = {blend_material(0.5f)};

@@ -108,6 +108,17 @@ TEST(LightFroxels, OutsideTheFogIsMarched) {
     }
 }
 
+TEST(LightFroxels, FitTheFogHoweverLargeTheScene) {
+    Stage stage;
+    const auto froxels = [&] {
+        return make_light_depth(stage.snapshot, lights()[0], LightTransmittance::froxel, 16, &stage.view).froxels;
+    };
+    const LightDepthFroxels close = froxels();
+    stage.snapshot.bounds = {vec3(-2000), vec3(2000)};
+    EXPECT_EQ(froxels().near, close.near);
+    EXPECT_EQ(froxels().far, close.far);
+}
+
 TEST(LightFroxels, WithoutAViewThereIsAGrid) {
     const Stage stage;
     const LightDepth depth = make_light_depth(stage.snapshot, lights()[0], LightTransmittance::froxel, 16);

@@ -71,6 +71,24 @@ TEST(StagedEdits, AFileHasTheEditsOfItsTimeAndLeavesTheNextPicturesAlone) {
     EXPECT_NE(read_file(directory.path() / "a.png"), read_file(directory.path() / "c.png"));
 }
 
+TEST(StagedEdits, AFileIsThatOfTheEditedSceneThoughTheViewerKnewItSmaller) {
+    TempFolder directory;
+    ViewState state = small_state();
+    Painter painter;
+    paint(painter, request_of(state, false), never_cancelled);
+    act(state, "edit media/haze/translate \"70 0 0\"");
+    paint(painter, request_of(state, false), never_cancelled);
+    SaveJob job;
+    job.request = request_of(state, false);
+    job.request.settings.march.visibility = Visibility::maps; // aligned to the scene's extent
+    job.file = directory.path() / "a.exr";
+    const auto saved = [&](const Snapshot* previous) {
+        save_picture(job, previous, never_cancelled, {});
+        return read_file(job.file);
+    };
+    EXPECT_TRUE(saved(&painter.snapshot) == saved(nullptr));
+}
+
 // A refused snapshot must not be taken for the one that was asked for.
 TEST(StagedEdits, AfterAMistakeTheSceneIsMadeAnew) {
     ViewState state = small_state();

@@ -17,7 +17,7 @@
 
 namespace tyndall {
 namespace {
-constexpr int tile_side = 8;
+constexpr int block_side = 8;
 constexpr size_t max_tiles = 256, few_tiles = 64, layer_count = 2; // layers: color, inscatter
 constexpr size_t first_passes = 4, few_passes = 16, max_passes = 64;
 constexpr uint32_t use_orders = 0x0d3e5u;
@@ -47,7 +47,7 @@ struct Sweep {
 // One pixel of each 2×2 block of a tile, at the same place in each, clamped to `begin`..`end`.
 SweptTile sweep_tile(ivec2 corner, ivec2 begin, ivec2 end, uint32_t place, std::vector<ivec2>& pixels) {
     const ivec2 offset(static_cast<int>(place & 1), static_cast<int>(place >> 1 & 1));
-    const ivec2 low = glm::max(corner, begin), high = glm::min(corner + tile_side, end);
+    const ivec2 low = glm::max(corner, begin), high = glm::min(corner + block_side, end);
     SweptTile tile{static_cast<double>((high - low).x * (high - low).y), 1, pixels.size(), 0};
     for (int y = corner.y; y < high.y; y += 2)
         for (int x = corner.x; x < high.x; x += 2)
@@ -59,7 +59,7 @@ SweptTile sweep_tile(ivec2 corner, ivec2 begin, ivec2 end, uint32_t place, std::
 Sweep make_sweep(const View& view, size_t most) {
     const bool cropped = view.crop_low != view.crop_high;
     const ivec2 begin = cropped ? view.crop_low : ivec2(0), end = cropped ? view.crop_high : view.size;
-    const ivec2 low = begin / tile_side, size = (end - 1) / tile_side + 1 - low;
+    const ivec2 low = begin / block_side, size = (end - 1) / block_side + 1 - low;
     const size_t all = static_cast<size_t>(size.x) * static_cast<size_t>(size.y), count = std::min(all, most);
     Sweep sweep{{}, {}, static_cast<double>(count) / static_cast<double>(all)};
     double pixels = 0;
@@ -68,7 +68,7 @@ Sweep make_sweep(const View& view, size_t most) {
         const uint32_t random = hash(view.seed, use_orders, static_cast<uint32_t>(i));
         const double at = static_cast<double>(i) + to_unit(random);
         const int tile = static_cast<int>(std::min(at / sweep.share * (1 - 1e-12), static_cast<double>(all - 1)));
-        const ivec2 corner = (low + ivec2(tile % size.x, tile / size.x)) * tile_side;
+        const ivec2 corner = (low + ivec2(tile % size.x, tile / size.x)) * block_side;
         sweep.tiles.push_back(sweep_tile(corner, begin, end, hash(random), sweep.pixels));
         pixels += sweep.tiles.back().weight;
     }
@@ -98,7 +98,7 @@ struct PixelLight {
     bool finite = true;
 };
 
-using TileLight = std::array<PixelLight, tile_side * tile_side / 4>;
+using TileLight = std::array<PixelLight, block_side * block_side / 4>;
 
 TileLight light_of(const Traced& traced, const View& view, std::span<const ivec2> pixels) {
     PixelSample samples[std::tuple_size_v<TileLight>];
@@ -179,21 +179,25 @@ template<class Value> ImageMean image_mean(const Sweep& sweep, const Value& valu
     return {mean, (1 - sweep.share) * between + sweep.share * within};
 }
 
+// Of the differences: their mean square relative to the ground truth's squared mean, and their mean relative to its
+// mean. Variances: those due to the pixels that are not sampled.
 struct Estimate {
-    double squared = 0, mean = 0; // of differences, relative to the ground truth's squared mean and to its mean
-    double variance = 0;          // of `squared`, due to the pixels that are not sampled
+    ImageMean squared, mean;
 };
 
-// The mode's squared error over the squared mean of the ground truth, a ratio of two estimates from the same pixels:
-// its variance is that of a linear combination of both (Cochran 1977, 6.3).
+// Both are ratios of estimates from the same pixels: their variance is that of a linear combination of the two (Cochran
+// 1977, 6.3).
 Estimate estimate(const Sweep& sweep, const PixelSums& of) {
-    const double truth = image_mean(sweep, [&](size_t i) { return of.truths[i] / of.passes; }).mean;
-    const double squared = image_mean(sweep, [&](size_t i) { return of.product(i); }).mean;
-    const double mean = image_mean(sweep, [&](size_t i) { return channel_mean(of.sums[i]) / of.passes; }).mean;
-    if (!(truth > 0)) return {squared > 0 ? infinity : 0, 0, 0};
-    const double slope = 2 * squared / truth, scale = 1 / (truth * truth);
-    const auto linear = [&](size_t i) { return of.product(i) - slope * of.truths[i] / of.passes; };
-    return {squared * scale, mean / truth, image_mean(sweep, linear).variance * scale * scale};
+    const auto truth_at = [&](size_t i) { return of.truths[i] / of.passes; };
+    const double truth = image_mean(sweep, truth_at).mean;
+    const auto ratio = [&](int power, const auto& value) {
+        const double mean = image_mean(sweep, value).mean, scale = std::pow(truth, -power);
+        if (!(truth > 0)) return ImageMean{mean > 0 ? infinity : 0, 0};
+        const auto linear = [&](size_t i) { return value(i) - power * mean / truth * truth_at(i); };
+        return ImageMean{mean * scale, image_mean(sweep, linear).variance * scale * scale};
+    };
+    return {ratio(2, [&](size_t i) { return of.product(i); }),
+            ratio(1, [&](size_t i) { return channel_mean(of.sums[i]) / of.passes; })};
 }
 
 // 97.5 % quantile of Student's (1908) t distribution with `freedom` degrees of freedom: two terms of the expansion of
@@ -204,23 +208,31 @@ double student(double freedom) {
            (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
 }
 
-// The bound is from how the estimate changes when each pass in turn is left out (Tukey's jackknife).
+// The variance of a mean over passes, from how it changes when each of them in turn is left out.
+double jackknife(std::span<const double> left_out) {
+    const double count = static_cast<double>(left_out.size());
+    double mean = 0, squares = 0;
+    for (const double one : left_out) mean += one / count, squares += one * one;
+    return (count - 1) / count * std::max(squares - count * mean * mean, 0.0);
+}
+
+// Bounds count the variance over passes (Tukey's jackknife) and that of the pixels that are not sampled.
 OrdersError error_of(const Sweep& sweep, size_t layer) {
     PixelSums sums(sweep.pixels.size());
     for (const SweepPass& pass : sweep.passes) sums.add(pass, layer, 1);
-    const Estimate all = estimate(sweep, sums);
-    if (all.squared == infinity) return {0, {infinity, infinity}};
-    double mean = 0, squares = 0;
-    const double count = static_cast<double>(sweep.passes.size());
+    const auto [squared, mean] = estimate(sweep, sums);
+    if (squared.mean == infinity) return {{0, infinity}, {infinity, infinity}};
+    std::vector<double> squared_without, mean_without;
     for (const SweepPass& pass : sweep.passes) {
         sums.add(pass, layer, -1);
-        const double one = estimate(sweep, sums).squared;
-        mean += one / count, squares += one * one;
+        const Estimate without = estimate(sweep, sums);
+        squared_without.push_back(without.squared.mean), mean_without.push_back(without.mean.mean);
         sums.add(pass, layer, 1);
     }
-    const double by_passes = (count - 1) / count * std::max(squares - count * mean * mean, 0.0);
-    const double value = std::max(all.squared, 0.0);
-    return {all.mean, {std::sqrt(value), std::sqrt(value + student(count - 1) * std::sqrt(by_passes + all.variance))}};
+    const double quantile = student(static_cast<double>(sweep.passes.size()) - 1), value = std::max(squared.mean, 0.0);
+    const double bound = std::sqrt(value + quantile * std::sqrt(jackknife(squared_without) + squared.variance));
+    const double mean_bound = std::abs(mean.mean) + quantile * std::sqrt(jackknife(mean_without) + mean.variance);
+    return {{mean.mean, std::min(mean_bound, bound)}, {std::sqrt(value), bound}}; // no mean exceeds the RMS
 }
 
 OrdersError worse_of(const Sweep& sweep) {
@@ -284,6 +296,6 @@ Limitation limitation_of(const OrdersError& orders) {
             &limitation::approximate_orders,
             Subject::setting,
             "fluence.orders",
-            {100 * bound, 100 * orders.mean}};
+            {100 * bound, 100 * orders.mean.bound}};
 }
 }

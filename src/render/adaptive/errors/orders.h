@@ -20,7 +20,7 @@ std::optional<double> remaining_error(const Noise& other, double error);
 namespace limitation {
 inline constexpr LimitationKind approximate_orders{
     "approximate_orders", "multiple scattering is approximated on a grid: against path tracing, pixels are up to {} % "
-                          "off (RMS), the whole image {} %"};
+                          "off (RMS), the whole image up to {} %"};
 }
 Limitation limitation_of(const OrdersError& orders);
 }

@@ -34,15 +34,11 @@ dvec3 row(const ShadowMap& map, int axis) {
     return {map.world_to_map[0][axis], map.world_to_map[1][axis], map.world_to_map[2][axis]};
 }
 
-vec3 corner_of(const Box& box, int i) {
-    return {i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y, i & 4 ? box.high.z : box.low.z};
-}
-
 Rect project(const ShadowMap& map, const Box& box) {
     if (!is_finite(box.low) || !is_finite(box.high)) return infinite_rect();
     Rect result;
     for (int i = 0; i < 8; ++i) {
-        const dvec3 offset = dvec3(corner_of(box, i)) - dvec3(map.position);
+        const dvec3 offset = dvec3(box.corner(i)) - dvec3(map.position);
         const double at[2] = {glm::dot(row(map, 0), offset), glm::dot(row(map, 1), offset)};
         result.grow(at);
     }
@@ -80,7 +76,7 @@ Rect project(const ShadowMap& map, const View& view, double near, double far) {
 Interval<double> depths(const Camera& camera, const Box& box) {
     Interval<double> range{endless, -endless};
     for (int i = 0; i < 8; ++i) {
-        const double depth = glm::dot(dvec3(corner_of(box, i)) - dvec3(camera.position), dvec3(camera.forward));
+        const double depth = glm::dot(dvec3(box.corner(i)) - dvec3(camera.position), dvec3(camera.forward));
         range.low = std::min(range.low, depth), range.high = std::max(range.high, depth);
     }
     return range;

@@ -100,11 +100,7 @@ void fill_shadow_map(const View& view, const Snapshot& snapshot, const Light& li
     if (map.projection == LightProjection::parallel) {
         const Box box = occluders.bounds();
         float first = infinity;
-        for (int i = 0; i < 8; ++i) {
-            const vec3 corner(i & 1 ? box.high.x : box.low.x, i & 2 ? box.high.y : box.low.y,
-                              i & 4 ? box.high.z : box.low.z);
-            first = std::min(first, glm::dot(corner - map.position, light.direction));
-        }
+        for (int i = 0; i < 8; ++i) first = std::min(first, glm::dot(box.corner(i) - map.position, light.direction));
         filling.start = first - 0.01f * glm::length(box.size()) - shadow_offset(map.position);
     } else {
         filling.nearest = std::max(light.radius, shadow_offset(light.position));

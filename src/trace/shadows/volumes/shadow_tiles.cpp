@@ -4,7 +4,6 @@
 
 namespace tyndall {
 namespace {
-constexpr int tile_side = shadow_tile_side;
 
 // A point in the camera's axes: x right, y up, z forward; w = 0 at infinity.
 using Point = glm::dvec4;
@@ -35,7 +34,7 @@ Projection make_projection(const Camera& camera, ivec2 size, float margin) {
     p.margin = margin + 0.05;
     p.half_width = (0.5 * size.x + p.margin) / scale, p.half_height = (0.5 * size.y + p.margin) / scale;
     p.pixels = {scale, 0.5 * size.x, 0.5 * size.y};
-    p.tiles = (size + tile_side - 1) / tile_side;
+    p.tiles = (size + shadow_tile_side - 1) / shadow_tile_side;
     return p;
 }
 
@@ -70,7 +69,7 @@ struct Collector {
 
     void cover(uint32_t face, int row, double low, double high) {
         const auto tile = [&](double x) {
-            return std::clamp(static_cast<int>(std::floor(std::clamp(x, -1e6, 1e6) / tile_side)), 0,
+            return std::clamp(static_cast<int>(std::floor(std::clamp(x, -1e6, 1e6) / shadow_tile_side)), 0,
                               projection.tiles.x - 1);
         };
         const Interval<int> of_row = wanted[static_cast<size_t>(row)];
@@ -109,10 +108,10 @@ struct Collector {
         }
         nearest.back() = static_cast<float>(near - 1e-5 * (1 + std::abs(near)));
         const auto row_of = [&](double at) {
-            return std::clamp(static_cast<int>(std::floor(at / tile_side)), 0, p.tiles.y - 1);
+            return std::clamp(static_cast<int>(std::floor(at / shadow_tile_side)), 0, p.tiles.y - 1);
         };
         for (int row = row_of(bottom - p.margin); row <= row_of(top + p.margin); ++row) {
-            const double from = row * tile_side - p.margin, to = (row + 1) * tile_side + p.margin;
+            const double from = row * shadow_tile_side - p.margin, to = (row + 1) * shadow_tile_side + p.margin;
             double low = infinity, high = -double(infinity);
             for (int i = 0; i < polygon.count; ++i) {
                 const int j = (i + 1) % polygon.count;
