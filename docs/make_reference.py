@@ -1,4 +1,5 @@
-"""Writes docs/reference/: settings, modes, scene and recipe keys, exit codes, from the tables the program has them from.
+"""Writes docs/reference/: settings, modes, scene and recipe keys, exit codes, limitations, from the tables the program has
+them from.
 
     python3 docs/make_reference.py build/release/tyndall            # write the pages, and the table of modes in README.md
     python3 docs/make_reference.py build/release/tyndall --check    # only tell which are stale; exit code 1 when one is
@@ -70,7 +71,7 @@ def values_text(row):
 def settings_page(listed):
     modes = [mode["name"] for mode in listed["modes"]]
     page = ("# Settings\n\n`--set NAME=VALUE` changes one; `tyndall modes MODE` lists those a mode reads. The default is that of "
-            "`--quality preview`; in\nparentheses stands what the other qualities take. Most users leave those marked *advanced* alone.\n")
+            "`--quality preview`;\nvalues at other qualities are in parentheses. Most users leave those marked *advanced* alone.\n")
     groups = {}
     for row in listed["settings"]:
         groups.setdefault(row["name"].split(".")[0], []).append(row)
@@ -87,7 +88,7 @@ def settings_page(listed):
 
 
 def modes_page(listed):
-    page = ("# Modes\n\nThe one table of techniques, as `tyndall modes` prints it; `tyndall modes NAME` shows one with the settings "
+    page = ("# Modes\n\nThe table of techniques, as `tyndall modes` prints it; `tyndall modes NAME` shows one with the settings "
             "it reads.\n[Techniques](../techniques.md) compares them.\n\n")
     return page + table(["`--mode`", "how it works", "promises", "use it for"],
                         [[f"`{mode['name']}`", mode["summary"], mode["promise"], mode["use"]] for mode in listed["modes"]])
@@ -218,8 +219,8 @@ def scene_page(root):
         page += "\n" + table(["key", "value", "meaning", "of type"],
                             [[*row, "all" if len(of) == len(kinds) else ", ".join(of)] for row, of in sorted(
                                 rows.items(), key=lambda item: -len(item[1]))])
-    page += ("\n## Words of other programs\n\nUnknown keys and types are answered with the nearest one here; these words of others "
-             "are known:\n\n" + table(["others say", "here"], sorted(
+    page += ("\n## Names in other programs\n\nUnknown keys and types are answered with the nearest one here; these names in other "
+             "programs are known:\n\n" + table(["other programs", "here"], sorted(
                  [", ".join(f"`{word}`" for word in words), f"`{key}`"] for key, words in root["synonyms"].items())))
     page += "\n## Keys over time\n\nA value that takes keys may be an object instead of a number or a vector:\n\n" + animation_text(root)
     return page
@@ -228,6 +229,30 @@ def scene_page(root):
 def recipe_page(root):
     page = f"# Recipe keys\n\n{root['description']}\n[Baking fog](../baking.md) explains them with an example.\n\n"
     return page + table(["key", "value", "meaning"], list(keys_of(root, root)))
+
+
+# --- limitations -------------------------------------------------------------------------------------------------------
+
+LIMITATION = re.compile(r'^inline constexpr LimitationKind \w+\{\s*"(\w+)",((?:\s*"(?:[^"\\]|\\.)*")+)\s*\};', re.M)
+
+
+def sentence_text(literals):
+    """The sentence of adjacent string literals, with letters for its numbers: n is a whole one."""
+    text = "".join(re.findall(r'"((?:[^"\\]|\\.)*)"', literals)).replace('\\"', '"')
+    letters = iter("xy")
+    return re.sub(r"\{n?\}", lambda found: "*n*" if found[0] == "{n}" else f"*{next(letters)}*", text)
+
+
+def limitations_page():
+    rows = []
+    for path in sorted((ROOT / "src").rglob("*.h")):
+        folder = path.parent.relative_to(ROOT / "src").as_posix()
+        mode = re.fullmatch(r"modes/(\w+)", folder)
+        for name, literals in LIMITATION.findall(path.read_text()):
+            rows.append([f"`{name}`", sentence_text(literals), f"`{mode[1].replace('_', '-')}`" if mode else "several"])
+    page = ("# Limitations\n\nWhat a mode may report before it renders, by the id in parentheses at the end of its line and in "
+            "`--stats-json`; letters\nstand for numbers. [Techniques](../techniques.md) explains the severities.\n\n")
+    return page + table(["id", "what it says", "mode"], sorted(rows, key=lambda row: row[0].strip("`")))
 
 
 # --- files -------------------------------------------------------------------------------------------------------------
@@ -242,7 +267,8 @@ def pages(tyndall):
     return {folder / "modes.md": modes_page(listed), folder / "settings.md": settings_page(listed),
             folder / "scene.md": scene_page(schema("scenes/scene.schema.json")),
             folder / "recipe.md": recipe_page(schema("volumes/recipe.schema.json")),
-            folder / "exit-codes.md": exit_codes_page(told(tyndall, "--help")), readme: "".join(parts)}
+            folder / "exit-codes.md": exit_codes_page(told(tyndall, "--help")), folder / "limitations.md": limitations_page(),
+            readme: "".join(parts)}
 
 
 def main():
