@@ -151,9 +151,15 @@ double render_rounds(TargetRounds& rounds, const Rendering& rendering, double wo
         stats.add(round_stats);
         stats.samples = static_cast<int>(std::lround(rays / pixels));
 
-        // Stop after an image of one sample per pixel: it has no variance to continue from.
         const bool meets = judge(rounds, image.layers, stats);
-        if (meets || rays >= max_target_samples * pixels || rounds.freedom == 0) return 0;
+        if (meets || rays >= max_target_samples * pixels) return 0;
+        // An image of one sample per pixel has no variance to continue from: start over if it took less time than
+        // expected, else stop.
+        if (rounds.freedom == 0) {
+            if (!(rounds.goal.seconds > 0 && rounds.left() > 2.5 * rounds.work_seconds)) return 0;
+            rounds.done = rays = 0, work = first_round(rounds);
+            continue;
+        }
         if (begin_allotment(rounds, image.layers, stats)) rays = 0;
         work = next_round(rounds, stats);
         if (work == 0 || rounds.goal.error == 0) continue;

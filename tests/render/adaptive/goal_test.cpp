@@ -267,6 +267,18 @@ TEST(Goal, OneSampleIsTheLeast) {
     EXPECT_GT(stats.noise->bound, stats.noise->error);
 }
 
+TEST(Goal, AFirstSampleThatIsQuickerThanExpectedIsFollowedByMore) {
+    static const Scene scene;
+    Choice slow;
+    slow.measured.sample_seconds = 1; // expected
+    Goal goal{0, 0.02, Quality::preview, counted_seconds};
+    goal.choice = std::make_shared<const Choice>(slow);
+    FrameStats stats;
+    render_to_target(own_mode(prepare_counted), plain_view({16, 16}, 4), snapshot_of(scene), {}, goal, {}, stats);
+    EXPECT_GT(stats.samples, 50);
+    EXPECT_LE(stats.goal_seconds, 0.02);
+}
+
 TEST(Goal, WhatComesFirstEndsIt) {
     const FrameStats reached = counted(0.05, 10);
     EXPECT_LE(reached.noise->bound, 0.05);
