@@ -75,7 +75,7 @@ std::optional<FrameJob> load_next(Pipeline& pipeline, const Snapshot* previous) 
             work.hash = frame_hash(pipeline.scene, pipeline.request, pipeline.plan, work.view, *pipeline.files);
             if (pipeline.request.resume && keep(pipeline, work)) {
                 work.report.load_seconds = steady_seconds() - start;
-                pipeline.kept_seconds += work.report.load_seconds;
+                pipeline.skipped_seconds += work.report.load_seconds;
                 report_frame(pipeline, work);
                 pipeline.progress.skip(1);
                 continue;

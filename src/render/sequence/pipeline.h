@@ -34,9 +34,9 @@ struct Pipeline {
     std::shared_ptr<FileHashes> files = first.files;
     size_t next = 0; // index of the next frame to load
     RenderReport report{};
-    std::mutex reporting{};               // protects the report
-    int rendered = 0;                     // frames
-    std::atomic<double> kept_seconds = 0; // time spent on frames that were kept
+    std::mutex reporting{};                  // protects the report
+    int rendered = 0;                        // frames
+    std::atomic<double> skipped_seconds = 0; // on finished frames that --resume skips
 };
 
 // Loads the next frame that has to be rendered; reports the ones kept on the way.

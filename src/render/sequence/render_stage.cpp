@@ -28,7 +28,7 @@ double seconds_to_write(const RenderRequest& request, const View& view) {
 double seconds_left(const Pipeline& pipeline, const View& view) {
     const RenderRequest& request = pipeline.request;
     if (request.time_budget == 0) return 0;
-    const double end = request.started + request.time_budget * (pipeline.rendered + 1) + pipeline.kept_seconds;
+    const double end = request.started + request.time_budget * (pipeline.rendered + 1) + pipeline.skipped_seconds;
     constexpr double safe = 0.96; // margin for delays of the process
     return std::max(safe * (end - steady_seconds() - seconds_to_write(request, view)), 1e-3);
 }

@@ -141,10 +141,10 @@ void run(Pipeline& pipeline) {
 
 // Seconds over the budgets of all frames rendered; 0 for a slight delay, unless there was no time for a second ray per
 // pixel.
-double seconds_late(const RenderRequest& request, const RenderReport& report, double kept_seconds) {
+double seconds_late(const RenderRequest& request, const RenderReport& report, double skipped_seconds) {
     const auto kept = std::ranges::count(report.frames, true, &FrameReport::kept);
     const double all = request.time_budget * static_cast<double>(std::ssize(request.frames) - kept);
-    const double late = all > 0 ? steady_seconds() - request.started - kept_seconds - all : 0;
+    const double late = all > 0 ? steady_seconds() - request.started - skipped_seconds - all : 0;
     const bool least = std::ranges::any_of(
         report.frames, [](const FrameReport& frame) { return !frame.kept && frame.stats.samples <= 1; });
     return late > (least ? 0 : std::max(0.1 * all, 0.2)) ? late : 0;
@@ -191,7 +191,7 @@ RenderReport render_sequence(const Scene& scene, const RenderRequest& request, c
     for (const FrameReport& frame : report.frames)
         report.missed +=
             request.target_error > 0 && frame.stats.noise && frame.stats.error()->bound > request.target_error;
-    report.late = seconds_late(request, report, pipeline.kept_seconds);
+    report.late = seconds_late(request, report, pipeline.skipped_seconds);
     report.cancelled = cancel && report.frames.size() < request.frames.size();
     report.seconds = steady_seconds() - start, report.loading = loading;
     report.peak_memory_bytes = peak_memory();

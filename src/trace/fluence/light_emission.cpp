@@ -98,8 +98,8 @@ LightSquare square_of(const std::shared_ptr<const Environment>& environment, con
 }
 
 namespace {
-// Whether the line of a ray of the same light is one of the square's.
-bool brings(const LightSquare& square, const Ray& ray) {
+// Whether a ray of the same light lies in the square.
+bool covers(const LightSquare& square, const Ray& ray) {
     if (square.environment) {
         const vec3 off = ray.origin - square.center;
         return glm::length(off - glm::dot(off, ray.direction) * ray.direction) < square.radius;
@@ -208,7 +208,7 @@ float share_across(const Light& light, const Ray& ray) {
 
 vec3 LightSquare::share(const Ray& ray) const {
     const vec3 direction = ray.direction;
-    if (left_out && brings(*left_out, ray)) return vec3(0);
+    if (left_out && covers(*left_out, ray)) return vec3(0);
     if (environment) {
         const float density = environment_density(*environment, -direction);
         if (!(density > 0)) return vec3(0);

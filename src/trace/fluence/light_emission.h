@@ -34,7 +34,7 @@ struct LightSquare {
     // Environment: a direction sampled by radiance, and the disc perpendicular to it that covers the box.
     std::shared_ptr<const Environment> environment; // null for other lights
     std::shared_ptr<const Light> as_light;          // its scales, shadows and links; `light` points here
-    // Distant light has two squares where surfaces reach much further than the fog: one around the fog, whose rays
+    // Distant lights have two squares where surfaces reach much further than the fog: one around the fog, whose rays
     // start this many meters further back, in front of the box, and one around the box that leaves those rays out.
     float back = 0;
     std::shared_ptr<const LightSquare> left_out;
