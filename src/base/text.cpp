@@ -3,6 +3,7 @@
 #include "base/error.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdarg>
 #include <cstdio>
 #include <limits>
@@ -39,6 +40,17 @@ std::string formatted(const char* format, ...) {
     va_end(again);
     result.pop_back();
     return result;
+}
+
+std::string lower_case(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+std::string hex_digits(uint64_t value) {
+    std::string digits(16, '0');
+    for (size_t i = 16; i-- > 0; value >>= 4) digits[i] = "0123456789abcdef"[value & 15];
+    return digits;
 }
 
 std::string joined(const std::vector<std::string>& words, std::string_view separator) {

@@ -12,6 +12,12 @@ namespace tyndall {
 // printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
 
+// ASCII letters in lower case.
+std::string lower_case(std::string text);
+
+// Sixteen digits, those above 9 in lower case.
+std::string hex_digits(uint64_t value);
+
 std::string joined(const std::vector<std::string>& words, std::string_view separator);
 
 // The fewest digits that round-trip.

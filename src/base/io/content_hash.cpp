@@ -1,4 +1,5 @@
 #include "base/io/file.h"
+#include "base/text.h"
 
 #include <algorithm>
 #include <bit>
@@ -26,12 +27,6 @@ uint64_t avalanched(uint64_t k) {
     k = (k ^ k >> 33) * 0xff51afd7ed558ccdu;
     k = (k ^ k >> 33) * 0xc4ceb9fe1a85ec53u;
     return k ^ k >> 33;
-}
-
-std::string hex(uint64_t value) {
-    std::string digits(16, '0');
-    for (size_t i = 16; i-- > 0; value >>= 4) digits[i] = "0123456789abcdef"[value & 15];
-    return digits;
 }
 
 // MurmurHash3, x64 128-bit variant, seed 0 (Appleby, public domain algorithm).
@@ -70,7 +65,7 @@ struct Murmur {
         a += b, b += a;
         a = avalanched(a), b = avalanched(b);
         a += b, b += a;
-        return hex(a) + hex(b);
+        return hex_digits(a) + hex_digits(b);
     }
 };
 }

@@ -2,12 +2,12 @@
 
 #include "base/error.h"
 #include "base/io/temporary.h"
+#include "base/text.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <cctype>
 #include <cerrno>
 #include <cstring>
 
@@ -67,11 +67,7 @@ void check_final_name(const fs::path& path) {
 }
 }
 
-std::string lower_extension(const fs::path& path) {
-    std::string extension = path.extension().string();
-    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return extension;
-}
+std::string lower_extension(const fs::path& path) { return lower_case(path.extension().string()); }
 
 std::string read_file(const fs::path& path, uint64_t most) {
     const Input input(path);

@@ -26,11 +26,15 @@ std::string hash_of_file(const std::filesystem::path& path) {
 }
 }
 
+FileStamp stamp_of(const struct stat& info) {
+    return {static_cast<uint64_t>(info.st_size), int64_t{info.st_mtim.tv_sec} * 1'000'000'000 + info.st_mtim.tv_nsec};
+}
+
 FileStamp stamp_of(const std::filesystem::path& path) {
     struct stat info;
     if (stat(path.c_str(), &info) != 0)
         fail(ExitCode::unreadable, path.string(), errno == ENOENT ? "no such file" : std::strerror(errno));
-    return {static_cast<uint64_t>(info.st_size), int64_t{info.st_mtim.tv_sec} * 1'000'000'000 + info.st_mtim.tv_nsec};
+    return stamp_of(info);
 }
 
 std::filesystem::path normal_path(const std::filesystem::path& path) {

@@ -5,6 +5,8 @@
 #include <map>
 #include <string>
 
+struct stat;
+
 namespace tyndall {
 // Size and modification time: a file that keeps both is assumed unchanged.
 struct FileStamp {
@@ -13,7 +15,8 @@ struct FileStamp {
     bool operator==(const FileStamp&) const = default;
 };
 
-// Throws Error (unreadable).
+// The second throws Error (unreadable).
+FileStamp stamp_of(const struct stat& info);
 FileStamp stamp_of(const std::filesystem::path& path);
 
 struct StampedHash {

@@ -70,7 +70,7 @@ FileStamp stamp_of_open(int descriptor, const std::filesystem::path& path) {
     struct stat info;
     if (fstat(descriptor, &info) != 0) fail(ExitCode::unreadable, path.string(), std::strerror(errno));
     if (!S_ISREG(info.st_mode)) fail(ExitCode::unreadable, path.string(), "is not a regular file");
-    return {static_cast<uint64_t>(info.st_size), int64_t{info.st_mtim.tv_sec} * 1'000'000'000 + info.st_mtim.tv_nsec};
+    return stamp_of(info);
 }
 }
 

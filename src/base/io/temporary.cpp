@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/io/file.h"
+#include "base/text.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -17,20 +18,13 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t longest_name = 255;
-constexpr int random_digits = 16;
-
-std::string hex(uint64_t value) {
-    std::string digits(random_digits, '0');
-    for (int i = random_digits - 1; i >= 0; --i, value >>= 4) digits[i] = "0123456789abcdef"[value & 15];
-    return digits;
-}
+constexpr size_t longest_name = 255, random_digits = 16;
 
 std::string random_tag() {
     uint64_t bits = 0;
     if (getrandom(&bits, sizeof bits, GRND_NONBLOCK) != sizeof bits)
         bits = static_cast<uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
-    return hex(bits);
+    return hex_digits(bits);
 }
 
 std::string host_tag() {

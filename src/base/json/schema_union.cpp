@@ -8,11 +8,7 @@
 
 namespace tyndall {
 namespace {
-std::string lowered(std::string_view text) {
-    std::string result(text.substr(0, 64));
-    for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return result;
-}
+std::string lowered(std::string_view text) { return lower_case(std::string(text.substr(0, 64))); }
 
 // A typo is assumed to keep at least two thirds of the letters.
 bool looks_like(std::string_view a, std::string_view b) {

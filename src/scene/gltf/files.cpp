@@ -1,6 +1,7 @@
 // The bytes behind the URIs of a glTF. Paths in a document are untrusted and may not leave its directory.
 #include "base/error.h"
 #include "base/io/file.h"
+#include "base/text.h"
 #include "scene/file/scene_file.h"
 #include "scene/gltf/document.h"
 
@@ -96,11 +97,7 @@ std::string data_uri_bytes(std::string_view uri, const std::string& location) {
     return base64_decoded(data.find('%') == data.npos ? std::string(data) : percent_decoded(data), location);
 }
 
-bool is_data_uri(std::string_view uri) {
-    std::string start(uri.substr(0, 5));
-    for (char& c : start) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return start == "data:";
-}
+bool is_data_uri(std::string_view uri) { return lower_case(std::string(uri.substr(0, 5))) == "data:"; }
 
 // A buffer's data, exactly byteLength bytes; if there is none, `lacking` says why.
 std::string buffer_bytes(GltfDocument& document, const Json& buffer, size_t index, const GltfContainer& container,

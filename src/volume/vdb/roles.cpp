@@ -1,9 +1,9 @@
 #include "volume/vdb/roles.h"
 
+#include "base/text.h"
 #include "volume/vdb/prewalk.h"
 
 #include <algorithm>
-#include <cctype>
 #include <string>
 
 namespace tyndall {
@@ -38,8 +38,7 @@ constexpr NamedRole named_roles[] = {
 }
 
 GridRole role_of_name(std::string_view name) {
-    std::string lower(name.substr(0, name.find('.')));
-    for (char& letter : lower) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+    const std::string lower = lower_case(std::string(name.substr(0, name.find('.'))));
     const auto found = std::ranges::find(named_roles, std::string_view(lower), &NamedRole::name);
     return found == std::end(named_roles) ? GridRole::density : found->role;
 }
