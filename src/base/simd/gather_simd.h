@@ -12,9 +12,6 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 // base[index] and base[index + 1], in half the reads of two gathers.
 HWY_INLINE void gather_pairs(const float* base, const Ints& index, Floats& first, Floats& second) {
-#if HWY_TARGET == HWY_SCALAR
-    first = gather(base, index), second = gather(base + 1, index);
-#else
     using PairTag = hn::ScalableTag<int64_t>;
     const auto gathered = [&](const auto& half) HWY_ATTR {
         const auto offset = hn::ShiftLeft<2>(hn::PromoteTo(PairTag(), half));
@@ -26,7 +23,6 @@ HWY_INLINE void gather_pairs(const float* base, const Ints& index, Floats& first
         first.part[i] = hn::ConcatEven(FloatTag(), high, low);
         second.part[i] = hn::ConcatOdd(FloatTag(), high, low);
     }
-#endif
 }
 }
 HWY_AFTER_NAMESPACE();

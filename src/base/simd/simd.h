@@ -156,9 +156,8 @@ HWY_INLINE Ints gather(const int32_t* base, const Ints& index) {
     return r;
 }
 
-// The 4 bytes at each offset; loaded lane by lane on targets where gather instructions are no faster.
+// The 4 bytes at each offset; loaded lane by lane, as gather instructions are no faster.
 HWY_INLINE hn::Vec<IntTag> words_at(const char* base, const hn::Vec<IntTag>& offset) {
-#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX3_DL
     alignas(64) int32_t at[lane_step];
     hn::Store(offset, IntTag(), at);
     const auto word = [&](int i) HWY_ATTR {
@@ -174,9 +173,6 @@ HWY_INLINE hn::Vec<IntTag> words_at(const char* base, const hn::Vec<IntTag>& off
 #else
     const hn::Half<IntTag> half;
     return hn::Combine(IntTag(), hn::Combine(half, four(12), four(8)), hn::Combine(half, four(4), four(0)));
-#endif
-#else
-    return hn::GatherOffset(IntTag(), reinterpret_cast<const int32_t*>(base), offset);
 #endif
 }
 

@@ -16,13 +16,11 @@ HalfRange halves_kernel(const float* from, size_t count, uint16_t* to) {
     const auto zero = hn::Zero(FloatTag()), most = hn::Set(FloatTag(), largest_half);
     auto low = most, high = zero;
     size_t i = 0;
-    if (HWY_TARGET != HWY_SCALAR) {
-        for (; i + lane_step <= count; i += lane_step) {
-            // Max returns its second operand for NaN.
-            const auto value = hn::Min(hn::Max(hn::LoadU(FloatTag(), from + i), zero), most);
-            low = hn::Min(low, value), high = hn::Max(high, value);
-            hn::StoreU(hn::BitCast(BitsTag(), hn::DemoteTo(HalfTag(), value)), BitsTag(), to + i);
-        }
+    for (; i + lane_step <= count; i += lane_step) {
+        // Max returns its second operand for NaN.
+        const auto value = hn::Min(hn::Max(hn::LoadU(FloatTag(), from + i), zero), most);
+        low = hn::Min(low, value), high = hn::Max(high, value);
+        hn::StoreU(hn::BitCast(BitsTag(), hn::DemoteTo(HalfTag(), value)), BitsTag(), to + i);
     }
     HalfRange range{half_from_float(hn::GetLane(hn::MinOfLanes(FloatTag(), low))),
                     half_from_float(hn::GetLane(hn::MaxOfLanes(FloatTag(), high)))};

@@ -16,35 +16,20 @@ HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 // Broadcasts each froxel's extinction to its four lanes.
 HWY_INLINE Floats extinctions(const Floats& light) {
-#if HWY_TARGET == HWY_SCALAR
-    alignas(64) float values[16];
-    store(light, values);
-    for (size_t i = 0; i < 16; ++i) values[i] = values[i | 3];
-    return load(values);
-#else
     Floats r;
     for (size_t i = 0; i < vectors_per_packet; ++i) r.part[i] = hn::Broadcast<3>(light.part[i]);
     return r;
-#endif
 }
 
 // 0 in all lanes of a froxel whose values are finite, else NaN.
 HWY_INLINE Floats finite_sums(const Floats& light) {
     const Floats zeros = light * 0.0f;
-#if HWY_TARGET == HWY_SCALAR
-    alignas(64) float values[16], sums[16];
-    store(zeros, values);
-    for (size_t i = 0; i < 16; ++i)
-        sums[i] = values[i | 3] + values[(i | 3) - 1] + values[(i | 3) - 2] + values[(i | 3) - 3];
-    return load(sums);
-#else
     Floats r;
     for (size_t i = 0; i < vectors_per_packet; ++i) {
         const auto pairs = hn::Add(zeros.part[i], hn::Shuffle2301(zeros.part[i]));
         r.part[i] = hn::Add(pairs, hn::Shuffle1032(pairs));
     }
     return r;
-#endif
 }
 
 HWY_INLINE Mask16 extinction_lanes() {
