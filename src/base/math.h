@@ -41,9 +41,8 @@ struct Box {
     bool empty() const { return !(low.x <= high.x && low.y <= high.y && low.z <= high.z); }
     vec3 center() const { return 0.5f * (low + high); }
     vec3 size() const { return high - low; }
-    vec3 corner(int i) const {
-        return {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z};
-    } // 0..7
+    // Corner 0 to 7.
+    vec3 corner(int i) const { return {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z}; }
     void grow(vec3 point) { low = glm::min(low, point), high = glm::max(high, point); }
     void grow(const Box& other) { low = glm::min(low, other.low), high = glm::max(high, other.high); }
 };
@@ -75,6 +74,20 @@ inline Box transform(const mat4& matrix, const Box& box) {
     if (!is_finite(box.low) || !is_finite(box.high)) return everywhere();
     Box result;
     for (int i = 0; i < 8; ++i) result.grow(vec3(matrix * vec4(box.corner(i), 1)));
+    return result;
+}
+
+// The same with unbounded directions left unbounded; of finite boxes slightly different floats. Interval arithmetic per
+// axis: 0 · infinity counts as 0, as a zero coefficient means that the axis has no effect.
+inline Box transform_box(const mat4& matrix, const Box& box) {
+    Box result{vec3(matrix[3]), vec3(matrix[3])};
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column) {
+            const float factor = matrix[column][row];
+            if (factor == 0) continue;
+            const float a = factor * box.low[column], b = factor * box.high[column];
+            result.low[row] += std::min(a, b), result.high[row] += std::max(a, b);
+        }
     return result;
 }
 

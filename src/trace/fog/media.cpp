@@ -196,22 +196,7 @@ void add_analytic(const Scene& scene, const MediumSource& source, double seconds
     medium.density.height_base = source.height_base.at(seconds),
     medium.density.height_falloff = source.height_falloff.at(seconds);
 }
-}
 
-// Interval arithmetic per axis. 0 · infinity counts as 0, as a zero coefficient means that the axis has no effect.
-Box transform_box(const mat4& matrix, const Box& box) {
-    Box result{vec3(matrix[3]), vec3(matrix[3])};
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) {
-            const float factor = matrix[column][row];
-            if (factor == 0) continue;
-            const float a = factor * box.low[column], b = factor * box.high[column];
-            result.low[row] += std::min(a, b), result.high[row] += std::max(a, b);
-        }
-    return result;
-}
-
-namespace {
 // Sets a medium's density and bounds. Returns false if it has no fog at this moment.
 bool find_fog(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
               const FogSource& before, MovingFiles& files, Snapshot& snapshot, Medium& medium) {

@@ -21,7 +21,4 @@ std::string recipe_key(const FogRecipe& recipe, double seconds);
 // Approximate speed at which a recipe's fog changes, meters per second: by wind or rising fire, by noise gradients that
 // evolve through one cell per turn, and by swirl. 0 = static fog, generated once.
 float recipe_speed(const FogRecipe& recipe);
-
-// The smallest box around an affinely transformed box; unbounded directions stay unbounded.
-Box transform_box(const mat4& matrix, const Box& box);
 }
