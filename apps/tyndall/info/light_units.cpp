@@ -2,10 +2,11 @@
 #include "base/text.h"
 
 #include <cstdlib>
+#include <numbers>
 
 namespace tyndall {
 namespace {
-constexpr double lumens_per_watt = 683, sphere = 4 * 3.14159265358979323846;
+constexpr double lumens_per_watt = 683, sphere = 4 * std::numbers::pi;
 
 // Whether a person could have typed the number: at most three significant digits.
 bool typed(double value) {

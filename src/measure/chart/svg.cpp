@@ -6,6 +6,7 @@
 #include "modes/mode.h"
 
 #include <algorithm>
+#include <numbers>
 #include <sstream>
 
 namespace tyndall {
@@ -160,7 +161,7 @@ std::string shape(int kind, Place at, double size) {
     const Shape& s = shapes[kind];
     std::string points;
     for (int i = 0; i < s.corners; ++i) {
-        const double angle = (s.turn + 360.0 * i / s.corners) * 3.14159265358979323846 / 180;
+        const double angle = (s.turn + 360.0 * i / s.corners) * std::numbers::pi / 180;
         const double radius = 1.25 * size * (i % 2 && s.inner < 1 ? s.inner : 1);
         points += n(at.x + radius * std::cos(angle)) + "," + n(at.y + radius * std::sin(angle)) + " ";
     }

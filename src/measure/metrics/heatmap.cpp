@@ -4,6 +4,7 @@
 #include "measure/metrics/metrics.h"
 #include "render/image/lettering.h"
 
+#include <numbers>
 #include <string>
 
 namespace tyndall {
@@ -52,7 +53,7 @@ void draw_strip(Image<Color8>& picture, int top, const HeatScale& scale) {
 Color8 heat_color(double t) {
     constexpr double start = 0.1, rotations = 0.42, saturation = 1.3;
     t = std::clamp(t, 0.0, 1.0);
-    const double angle = 2 * 3.14159265358979323846 * (start / 3 + 1 + rotations * t);
+    const double angle = 2 * std::numbers::pi * (start / 3 + 1 + rotations * t);
     const double amplitude = saturation * t * (1 - t) / 2, u = std::cos(angle), v = std::sin(angle);
     const double rgb[3] = {t + amplitude * (-0.14861 * u + 1.78277 * v), t + amplitude * (-0.29227 * u - 0.90649 * v),
                            t + amplitude * 1.97294 * u};

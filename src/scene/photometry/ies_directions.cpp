@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace tyndall {
 namespace {
-constexpr double exact_pi = 3.14159265358979323846, degrees = 180 / exact_pi;
+constexpr double degrees = 180 / std::numbers::pi;
 
 // The position of a value in a list of ascending angles.
 struct Between {
@@ -86,7 +87,8 @@ double zonal_lumens(const IesFile& file) {
     double mirrored = 1;
     if (file.type == Photometry::type_c) {
         rows = sine_weights(file.vertical);
-        planes = file.horizontal.size() == 1 ? std::vector<double>{2 * exact_pi} : even_weights(file.horizontal);
+        planes =
+            file.horizontal.size() == 1 ? std::vector<double>{2 * std::numbers::pi} : even_weights(file.horizontal);
         const double covered = file.horizontal.back() - file.horizontal.front();
         mirrored = file.horizontal.size() == 1 ? 1 : 360 / covered;
     } else {

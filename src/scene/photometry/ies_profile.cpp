@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 namespace tyndall {
 namespace {
-constexpr double to_radians = 3.14159265358979323846 / 180;
+constexpr double to_radians = std::numbers::pi / 180;
 
 double smallest_gap(const std::vector<double>& angles) {
     double gap = 360;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 
 namespace tyndall {
 namespace {
@@ -18,7 +19,7 @@ double gaussian(double x) { return std::exp(-4.5 * x * x) - std::exp(-4.5); }
 
 // Blackman–Harris window, 4 terms (Harris 1978), over [-1,1]. Multiples of the angle by Chebyshev polynomials.
 double blackman_harris(double x) {
-    const double one = std::cos(3.14159265358979323846 * (x + 1)), two = 2 * one * one - 1, three = (2 * two - 1) * one;
+    const double one = std::cos(std::numbers::pi * (x + 1)), two = 2 * one * one - 1, three = (2 * two - 1) * one;
     return 0.35875 - 0.48829 * one + 0.14128 * two - 0.01168 * three;
 }
 

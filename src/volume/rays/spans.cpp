@@ -3,11 +3,13 @@
 #include "volume/bricks/brick_walk.h"
 #include "volume/medium.h"
 
+#include <numbers>
+
 namespace tyndall {
 namespace {
+using std::numbers::ln2;
 constexpr double farthest = 1e12; // meters; unbounded fog ends here
-constexpr double ln2 = 0.69314718055994530942;
-constexpr int highest_band = 24; // density 2^-24 of that at the base; height fog above is ignored
+constexpr int highest_band = 24;  // density 2^-24 of that at the base; height fog above is ignored
 
 // Calls visit(interval, largest density, smallest density) along homogeneous or height fog. Height fog is split into
 // bands over which its density halves: band k spans (k-1)·ln 2 to k·ln 2 falloff lengths above the base, band 0 lies
