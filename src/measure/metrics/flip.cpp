@@ -9,10 +9,10 @@
 
 namespace tyndall {
 namespace {
+constexpr double pi_d = std::numbers::pi;
 // The constants of the papers: exponents and the bend of the color difference, width of a feature in degrees, and the
 // luminance at which the brightest pixel is shown.
 constexpr float color_exponent = 0.7f, bend_at = 0.4f, bend_to = 0.95f, feature_exponent = 0.5f;
-constexpr double pi_d = std::numbers::pi;
 constexpr double feature_width = 0.082, nearly_white = 0.85, darkest_median = 1e-3;
 
 // Contrast sensitivity of the eye as a sum of two Gaussians a·√(π/b)·exp(−π² x²/b), x in degrees, separately for

@@ -17,6 +17,8 @@ VoxelMask voxels_above(std::span<const float, 512> values, float threshold);
 // Bounding box (inclusive, 0..7) of the voxels in a nonempty mask.
 void bounds_of(const VoxelMask& mask, ivec3& low, ivec3& high);
 
+inline bool contains(const VoxelMask& mask, uint32_t v) { return mask[v / 64] >> (v % 64) & 1; }
+
 inline size_t count_voxels(const VoxelMask& mask) {
     size_t sum = 0;
     for (const uint64_t word : mask) sum += static_cast<size_t>(std::popcount(word));

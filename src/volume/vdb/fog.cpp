@@ -156,7 +156,7 @@ void apply(const ValueMap& map, DecodedTree& tree) {
         for (auto n = static_cast<size_t>(begin); n < static_cast<size_t>(end); ++n)
             for (uint32_t v = 0; v < 512; ++v) {
                 float& value = tree.leaves[n].values[v];
-                if (everywhere || value != 0 || (tree.active[n][v / 64] >> (v % 64) & 1)) value = map(value);
+                if (everywhere || value != 0 || contains(tree.active[n], v)) value = map(value);
             }
     });
     for (Tile& tile : tree.active_tiles) tile.value = map(tile.value);
@@ -170,7 +170,7 @@ void limit(DecodedTree& tree, float most, VdbReadReport& report) {
         for (uint32_t v = 0; v < 512; ++v) {
             float& value = tree.leaves[n].values[v];
             if (!(value > most) || std::isinf(value)) continue;
-            report.above += tree.active[n][v / 64] >> (v % 64) & 1, value = most;
+            report.above += contains(tree.active[n], v), value = most;
         }
     for (Tile& tile : tree.active_tiles)
         if (tile.value > most && !std::isinf(tile.value)) report.above += voxel_count(tile), tile.value = most;
@@ -181,7 +181,7 @@ void limit(DecodedTree& tree, float most, VdbReadReport& report) {
 void keep_active(DecodedTree& tree) {
     for (size_t n = 0; n < tree.leaves.size(); ++n)
         for (uint32_t v = 0; v < 512; ++v)
-            if (!(tree.active[n][v / 64] >> (v % 64) & 1)) tree.leaves[n].values[v] = 0;
+            if (!contains(tree.active[n], v)) tree.leaves[n].values[v] = 0;
     tree.inactive_tiles.clear(), tree.background = 0;
 }
 
@@ -190,7 +190,7 @@ void keep_finite(DecodedTree& tree, VdbReadReport& report) {
         for (uint32_t v = 0; v < 512; ++v) {
             float& value = tree.leaves[n].values[v];
             if (std::isfinite(value)) continue;
-            report.non_finite += tree.active[n][v / 64] >> (v % 64) & 1, value = 0;
+            report.non_finite += contains(tree.active[n], v), value = 0;
         }
     for (Tile& tile : tree.active_tiles)
         if (!std::isfinite(tile.value)) report.non_finite += voxel_count(tile), tile.value = 0;
@@ -205,8 +205,7 @@ void make_plain(DecodedTree tree, SparseVolume& volume) {
 
 DecodedTree active_mask(DecodedTree tree) {
     for (size_t n = 0; n < tree.leaves.size(); ++n)
-        for (uint32_t v = 0; v < 512; ++v)
-            tree.leaves[n].values[v] = static_cast<float>(tree.active[n][v / 64] >> (v % 64) & 1);
+        for (uint32_t v = 0; v < 512; ++v) tree.leaves[n].values[v] = static_cast<float>(contains(tree.active[n], v));
     for (Tile& tile : tree.active_tiles) tile.value = 1;
     tree.inactive_tiles.clear(), tree.background = 0;
     return tree;
@@ -227,7 +226,7 @@ void add_statistics(const DecodedTree& tree, VdbGridInfo& info) {
     };
     for (size_t n = 0; n < tree.leaves.size(); ++n)
         for (uint32_t v = 0; v < 512; ++v)
-            if (tree.active[n][v / 64] >> (v % 64) & 1) add(tree.leaves[n].values[v], 1);
+            if (contains(tree.active[n], v)) add(tree.leaves[n].values[v], 1);
     for (const Tile& tile : tree.active_tiles) add(tile.value, voxel_count(tile));
     if (finite > 0) info.minimum = low, info.maximum = high, info.mean = static_cast<float>(sum / finite);
     info.background = tree.background;
