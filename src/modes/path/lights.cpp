@@ -8,6 +8,7 @@
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
+#include "volume/rays/fog_reach.h"
 
 namespace tyndall {
 namespace {
@@ -29,18 +30,11 @@ float filter_mean(const Light& light, const Ray& line, const LineLight& along) {
 float volume_brightness(const Light& light) { return luminance(light.intensity) * light.volume_scale; }
 
 // From the first fog to the last; unbounded fog counts up to 8 optical depths or the end of the scene.
-Interval<float> fog_interval(const Snapshot& snapshot, const Ray& line) {
-    Interval<float> stretch{infinity, 0};
-    for (const Medium& medium : snapshot.media) {
-        Interval<float> inside = clip(medium.world_bounds, line.origin, line.direction, {0, line.t_max});
-        if (inside.empty()) continue;
-        if (std::isinf(inside.high)) {
-            const Interval<float> scene = clip(snapshot.bounds, line.origin, line.direction, inside);
-            inside.high = std::max(scene.empty() ? 0 : scene.high, inside.low + 8 / medium.majorant());
-        }
-        stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
-    }
-    return stretch;
+Interval<float> fog_on(const Snapshot& snapshot, const Ray& line) {
+    return fog_interval(snapshot.media, line, [&](const Medium& medium, const Interval<float>& inside) {
+        const Interval<float> scene = clip(snapshot.bounds, line.origin, line.direction, inside);
+        return std::max(scene.empty() ? 0 : scene.high, inside.low + 8 / medium.majorant());
+    });
 }
 
 // Estimated irradiance at a point, for picking lights.
@@ -65,10 +59,10 @@ LineLight light_on_line(const Light& light, const Ray& line, Interval<float> str
         return along;
     }
     const dvec3 offset = dvec3(light.position) - dvec3(line.origin), direction(line.direction);
-    const double closest = glm::dot(offset, direction), nearest = capped_radius(light);
+    const double nearest = glm::dot(offset, direction), radius = capped_radius(light);
     along.reach = light_reach(light, line, stretch);
     if (along.reach.empty()) return along;
-    along.angles = equi_angular<double>(closest, std::max(glm::length(offset - closest * direction), nearest),
+    along.angles = equi_angular<double>(nearest, std::max(glm::length(offset - nearest * direction), radius),
                                         along.reach.low, along.reach.high);
     const double angle = along.angles.to - along.angles.from;
     if (angle > 0)
@@ -106,7 +100,7 @@ float LineLight::density(float t) const {
 
 void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights) {
     lights.clear();
-    const Interval<float> stretch = fog_interval(snapshot, line);
+    const Interval<float> stretch = fog_on(snapshot, line);
     double total = 0;
     for (const Light& light : snapshot.lights) {
         lights.push_back(stretch.empty() ? LineLight{} : light_on_line(light, line, stretch));

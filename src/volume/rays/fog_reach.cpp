@@ -1,8 +1,6 @@
 // Finds the effective end of unbounded fog by doubling, using its analytic optical depth.
 #include "volume/rays/fog_reach.h"
 
-#include "volume/medium.h"
-
 namespace tyndall {
 namespace {
 constexpr float horizon = 1e12f;    // meters; no ray goes farther
@@ -41,12 +39,6 @@ float fog_reach(std::span<const Medium> media, const Ray& ray) {
 }
 
 Interval<float> fog_interval(std::span<const Medium> media, const Ray& ray) {
-    Interval<float> stretch{infinity, 0};
-    for (const Medium& medium : media) {
-        const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, ray.t_max});
-        if (inside.empty()) continue;
-        stretch.low = std::min(stretch.low, inside.low), stretch.high = std::max(stretch.high, inside.high);
-    }
-    return stretch.empty() ? Interval<float>{} : stretch;
+    return fog_interval(media, ray, [](const Medium&, const Interval<float>&) { return infinity; });
 }
 }
