@@ -75,19 +75,15 @@ struct FileProperty {
 
 FileProperty read_frame(const GridSource& source, size_t number, Quantity quantity, int frame,
                         const ReadContext& reading, std::span<const GridProperty> known) {
-    const auto file = sequence_file(source.sequence, frame, reading.missing);
-    note_gap(source.sequence, frame, reading.missing, reading.snapshot.notes);
+    Snapshot& snapshot = reading.snapshot;
+    const auto file = file_at(source.sequence, frame, reading.missing, "property", source.text(), snapshot);
     if (!file) return {};
-    const std::string key = file_key(*file) + source.text();
-    CacheFolder* files = reading.snapshot.files.get();
-    const std::string content =
-        files ? "property " + file_hash(*file, *files->inputs) + " " + source.text() : std::string();
     for (const GridProperty& one : known)
-        if (one.key == key) return {one, content};
-    StoredProperty stored = load_or_build<StoredProperty>(files, "bricks", content,
-                                                          [&] { return read_file(*file, source, number, quantity); });
-    if (!stored.note.empty()) reading.snapshot.notes.push_back(file->filename().string() + ": " + stored.note);
-    return {property_of(std::move(stored), key, quantity), content};
+        if (one.key == file->key) return {one, file->content};
+    StoredProperty stored = load_or_build<StoredProperty>(
+        snapshot.files.get(), "bricks", file->content, [&] { return read_file(file->path, source, number, quantity); });
+    if (!stored.note.empty()) snapshot.notes.push_back(file->path.filename().string() + ": " + stored.note);
+    return {property_of(std::move(stored), file->key, quantity), file->content};
 }
 
 // The property at a time between frames: two files blended, or one moved by velocities.

@@ -91,44 +91,33 @@ FogSource grown(const MediumSource& source, double seconds, CacheFolder* files, 
     return source_of(load_or_build<StoredFog>(files, "bricks", key, grow_fog), key, files ? key : "");
 }
 
-// Shared arguments for reading a medium's files.
-struct ReadContext {
-    MissingFrame missing;
-    CacheFolder* files;
-    std::vector<std::string>& notes;
-    const Scene& scene;
-};
-
 // The fog in a frame's file, taken from `known` if it is there.
-FogSource read(const MediumSource& source, int frame, const ReadContext& reading, std::span<const FogSource> known) {
-    const auto file = sequence_file(source.sequence, frame, reading.missing);
-    note_gap(source.sequence, frame, reading.missing, reading.notes);
+FogSource read(const MediumSource& source, int frame, MissingFrame missing, std::span<const FogSource> known,
+               Snapshot& snapshot) {
+    const auto file =
+        file_at(source.sequence, frame, missing, "file", source.density_grid + source.density_map.text(), snapshot);
     if (!file) return {};
-    const std::string key = file_key(*file) + source.density_grid + source.density_map.text();
     for (const FogSource& one : known)
-        if (one.key == key) return one;
-    CacheFolder* files = reading.files;
-    const std::string content =
-        files ? "file " + file_hash(*file, *files->inputs) + " " + source.density_grid + source.density_map.text()
-              : std::string();
-    const StoredFog fog = load_or_build<StoredFog>(files, "bricks", content, [&] {
+        if (one.key == file->key) return one;
+    const StoredFog fog = load_or_build<StoredFog>(snapshot.files.get(), "bricks", file->content, [&] {
         VdbReadReport report;
-        SparseVolume volume = read_vdb(*file, source.density_grid, source.density_map, infinity, &report);
+        SparseVolume volume = read_vdb(file->path, source.density_grid, source.density_map, infinity, &report);
         const float unit = density_unit(volume);
         report.above = divide_by(unit, volume), report.most = unit * largest_half;
-        return within(file->string(), [&] { return stored_fog(volume, unit, report.summary()); });
+        return within(file->path.string(), [&] { return stored_fog(volume, unit, report.summary()); });
     });
-    if (!fog.note.empty()) reading.notes.push_back(file->filename().string() + ": " + fog.note);
-    return source_of(fog, key, content);
+    if (!fog.note.empty()) snapshot.notes.push_back(file->path.filename().string() + ": " + fog.note);
+    return source_of(fog, file->key, file->content);
 }
 
 std::string content_of(const FogSource& source) { return source.bricks ? source.bricks->content : "none"; }
 
 // Fog at a time between frames: two files blended, or one moved by its velocities. Stores the files read in `frames`.
-FogSource read_between(const MediumSource& source, const SequenceTime& time, const ReadContext& reading,
-                       const FogSource& before, std::span<const FogSource> known, FogFrames& frames) {
+FogSource read_between(const MediumSource& source, const SequenceTime& time, MissingFrame missing,
+                       const FogSource& before, std::span<const FogSource> known, FogFrames& frames,
+                       Snapshot& snapshot) {
     const auto of_frame = [&](int frame) {
-        FogSource fog = read(source, frame, reading, known);
+        FogSource fog = read(source, frame, missing, known, snapshot);
         fog.placed = nullptr, fog.grids = nullptr;
         if (!fog.key.empty()) frames.densities.push_back(fog);
         return fog;
@@ -139,12 +128,12 @@ FogSource read_between(const MediumSource& source, const SequenceTime& time, con
     const std::string key = here.key + "\n" + next.key + time.key();
     if (key == before.key) return before;
     std::string content;
-    if (reading.files)
+    if (snapshot.files)
         content = "file " + content_hash(content_of(here) + "\n" + content_of(next) + "\n" + time.content());
-    const StoredFog fog = load_or_build<StoredFog>(reading.files, "bricks", content, [&] {
-        const SparseVolume volume =
-            volume_at(time, {here.bricks, here.index_to_world, here.unit},
-                      {next.bricks, next.index_to_world, next.unit}, moved_name(reading.scene, source.name, "density"));
+    const StoredFog fog = load_or_build<StoredFog>(snapshot.files.get(), "bricks", content, [&] {
+        const SparseVolume volume = volume_at(time, {here.bricks, here.index_to_world, here.unit},
+                                              {next.bricks, next.index_to_world, next.unit},
+                                              moved_name(*snapshot.scene, source.name, "density"));
         return stored_fog(volume, here.bricks ? here.unit : next.unit, {});
     });
     return source_of(fog, key, content);
@@ -169,16 +158,15 @@ struct MovingFiles {
 
 FogSource fog_source(const Scene& scene, const MediumSource& source, Moment moment, MissingFrame missing,
                      const FogSource& before, MovingFiles& files, Snapshot& snapshot) {
-    const ReadContext reading{missing, snapshot.files.get(), snapshot.notes, scene};
     std::vector<FogSource> known{before};
     if (files.before) known.insert(known.end(), files.before->densities.begin(), files.before->densities.end());
     FogSource result;
     if (source.kind == MediumKind::noise)
         result = grown(source, moment.grown.value_or(moment.seconds), snapshot.files.get(), before);
     else if (files.time.between())
-        result = read_between(source, files.time, reading, before, known, files.now);
+        result = read_between(source, files.time, missing, before, known, files.now, snapshot);
     else
-        result = read(source, files.time.frame, reading, known);
+        result = read(source, files.time.frame, missing, known, snapshot);
     const mat4 matrix = checked_matrix(scene, source, moment.seconds);
     if (!result.bricks || (result.placed && result.matrix == matrix)) return result;
     result.placed = placed_bricks(result, matrix);

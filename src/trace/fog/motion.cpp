@@ -23,19 +23,15 @@ double frames_after(const Scene& scene, const Moment& moment) {
 
 std::shared_ptr<const FileVelocity> velocity_of(const GridSource& source, int frame, MissingFrame missing,
                                                 const std::shared_ptr<const FileVelocity>& before, Snapshot& snapshot) {
-    const auto file = sequence_file(source.sequence, frame, missing);
-    note_gap(source.sequence, frame, missing, snapshot.notes);
+    const auto file = file_at(source.sequence, frame, missing, "velocity", source.text(), snapshot);
     if (!file) return nullptr;
-    auto velocity = std::make_shared<FileVelocity>();
-    const std::string grids = source.text();
-    velocity->key = file_key(*file) + grids;
-    if (before && before->key == velocity->key) return before;
-    if (CacheFolder* files = snapshot.files.get())
-        velocity->content = "velocity " + file_hash(*file, *files->inputs) + " " + grids;
+    if (before && before->key == file->key) return before;
     VdbReadReport report;
-    velocity->field = make_velocity_field(read_velocity_vdb(*file, source.grids, source.map, &report));
+    auto velocity = std::make_shared<FileVelocity>();
+    velocity->key = file->key, velocity->content = file->content;
+    velocity->field = make_velocity_field(read_velocity_vdb(file->path, source.grids, source.map, &report));
     if (const std::string note = report.summary(); !note.empty())
-        snapshot.notes.push_back(file->filename().string() + ": " + note);
+        snapshot.notes.push_back(file->path.filename().string() + ": " + note);
     return velocity;
 }
 
@@ -46,17 +42,30 @@ int nearest_frame(const MediumSource& source, int frame, double after, MissingFr
     const auto there = sequence_file(source.sequence, frame + steps, missing);
     return there && there != sequence_file(source.sequence, frame, missing) ? frame + steps : frame;
 }
-}
 
+// Path, size and modification time.
 std::string file_key(const std::filesystem::path& file) {
     const uint64_t size = check_readable(file);
     const auto changed = std::filesystem::last_write_time(file).time_since_epoch().count();
     return "file " + file.string() + " " + std::to_string(size) + " " + std::to_string(changed) + " ";
 }
+}
 
 void note_gap(const FileSequence& sequence, int frame, MissingFrame missing, std::vector<std::string>& notes) {
     std::string note = gap_note(sequence, frame, missing);
     if (!note.empty() && !std::ranges::count(notes, note)) notes.push_back(std::move(note));
+}
+
+std::optional<SequencedFile> file_at(const FileSequence& sequence, int frame, MissingFrame missing,
+                                     std::string_view kind, const std::string& grids, Snapshot& snapshot) {
+    auto path = sequence_file(sequence, frame, missing);
+    note_gap(sequence, frame, missing, snapshot.notes);
+    if (!path) return std::nullopt;
+    SequencedFile file{std::move(*path), {}, {}};
+    file.key = file_key(file.path) + grids;
+    if (const CacheFolder* files = snapshot.files.get())
+        file.content = std::string(kind) + " " + file_hash(file.path, *files->inputs) + " " + grids;
+    return file;
 }
 
 bool moves(const MediumSource& source) { return source.velocity || (source.blends && !source.sequence.files.empty()); }
