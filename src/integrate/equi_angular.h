@@ -16,7 +16,7 @@ template<class T> struct EquiAngular {
         const T slope = std::tan(from + share * (to - from));
         return {nearest + height * slope, (to - from) * height * (1 + slope * slope)};
     }
-    T density(T t) const { // PDF of t for uniform shares, 1/m
+    T pdf(T t) const { // of t, for uniform shares, 1/m
         const T off = t - nearest;
         return height / ((to - from) * (height * height + off * off));
     }

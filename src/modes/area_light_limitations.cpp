@@ -173,7 +173,7 @@ double error_behind_smoke(const Snapshot& snapshot, std::span<const Light> lamps
         for (uint32_t i = 0; i < points; ++i) {
             const Sample2 a = sample2(i, 1), b = sample2(i, 2);
             const EmissionSample at = sample_emission(*fire, a.x, {a.y, b.x, b.y});
-            if (at.density > 0) add(at.position, luminance(at.emission) / at.density, exact);
+            if (at.pdf > 0) add(at.position, luminance(at.emission) / at.pdf, exact);
         }
         for (const Light& lamp : lamps) add(lamp.position, luminance(lamp.intensity), approximate);
         const double leaves = exact.x / std::max(exact.y, 1e-300), off = approximate.x / approximate.y - leaves;

@@ -73,20 +73,20 @@ TEST(Environment, DirectionsArePickedByTheirLight) {
             const Sample2 u = sample2(i, 7);
             const EnvironmentSample sample = sample_environment(*environment, {u.x, u.y});
             EXPECT_NEAR(glm::length(sample.direction), 1, 1e-5);
-            sum += dvec3(sample.radiance / sample.density) / double(count);
+            sum += dvec3(sample.radiance / sample.pdf) / double(count);
         }
         const dvec3 expected = 4 * std::numbers::pi * dvec3(environment->mean());
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c], expected[c], 0.002 * expected[c]);
-        double chance = 0; // of all directions
+        double probability = 0; // of all directions
         for (uint32_t i = 0; i < count; ++i) {
             const Sample2 u = sample2(i, 9);
             const float y = 1 - 2 * u.x, across = std::sqrt(1 - y * y);
             const vec3 d(across * std::sin(2 * pi * u.y), y, across * std::cos(2 * pi * u.y));
-            const float density = environment_density(*environment, d);
-            EXPECT_TRUE(density > 0 || environment_radiance(*environment, d) == vec3(0));
-            chance += 4 * std::numbers::pi * double(density) / count;
+            const float pdf = environment_pdf(*environment, d);
+            EXPECT_TRUE(pdf > 0 || environment_radiance(*environment, d) == vec3(0));
+            probability += 4 * std::numbers::pi * double(pdf) / count;
         }
-        EXPECT_NEAR(chance, 1, 0.05);
+        EXPECT_NEAR(probability, 1, 0.05);
     }
 }
 

@@ -19,9 +19,9 @@ void append_paths(const Environment& environment, const ScatteringFog& fog, cons
         if (max_component(arriving) > 0) paths.push_back({ray, {there.point, direction, infinity}, arriving});
     };
     const EnvironmentSample sample = sample_environment(environment, u);
-    if (sample.density > 0) append(sample.direction, sample.radiance, sample.density);
+    if (sample.pdf > 0) append(sample.direction, sample.radiance, sample.pdf);
     const vec3 direction = direction_by_phase(fog.media, there, which, v);
-    append(direction, environment_radiance(environment, direction), environment_density(environment, direction));
+    append(direction, environment_radiance(environment, direction), environment_pdf(environment, direction));
 }
 
 void append_ray(const Environment& environment, const ScatteringFog& fog, const RayBatch& batch, size_t i,

@@ -45,9 +45,9 @@ void append_paths(const ScatteringFog& fog, const Light& light, const Ray& ray, 
     const double extinction = evaluate_fog(distances.fog.pieces, piece, ray, t, there);
     if (!(extinction > 0)) return;
     const double transmittance = distances.fog.transmittance(piece, t);
-    const double density = count * (distances.angles.density(t) + distances.fog.density(extinction, transmittance));
-    if (!(density > 0)) return;
-    const double weight = extinction * transmittance / density * (fade_at(fog, there.point) * light.volume_scale);
+    const double pdf = count * (distances.angles.pdf(t) + distances.fog.pdf(extinction, transmittance));
+    if (!(pdf > 0)) return;
+    const double weight = extinction * transmittance / pdf * (fade_at(fog, there.point) * light.volume_scale);
     const bool wide = is_wide(fog, there, light);
     const auto append = [&](vec3 direction, float distance, float steradians) {
         const auto [share, by_phase] = scattered(fog.media, there, direction);

@@ -53,10 +53,10 @@ std::vector<FireSample> fire_samples(const EmissiveBricks& fire) {
     for (uint32_t i = 0; i < places_asked; ++i) {
         const Sample2 first = sample2(i, hash(0xf12eu)), second = sample2(i, hash(0xf12fu));
         const EmissionSample place = sample_emission(fire, first.x, {first.y, second.x, second.y});
-        const double weight = double{luminance(place.emission)} / place.density / places_asked;
+        const double weight = double{luminance(place.emission)} / place.pdf / places_asked;
         if (weight > 0)
             places.push_back(
-                {dvec3(place.position), dvec3(place.emission) / double{place.density} / double{places_asked}, weight});
+                {dvec3(place.position), dvec3(place.emission) / double{place.pdf} / double{places_asked}, weight});
     }
     return places;
 }

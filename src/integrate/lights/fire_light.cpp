@@ -53,26 +53,26 @@ void append_path(const FireRay& fire_ray, const FirePoint& point, const Emission
     if (!(max_component(place.emission) > 0) || !(away > 0)) return;
     const ScatteringFog& fog = fire_ray.fog;
     const auto [albedo, by_phase] = scattered(fog.media, there, offset / away);
-    const double by_fog = fire_ray.seen.density(point.extinction, point.transmittance);
-    const double aimed = double{place.density} * away * away;
-    const double chance =
-        fire_ray.rounds * (aimed * (angles.density(point.distance) + by_fog) + by_fog * by_phase * place.line_density);
-    const double weight = share * point.extinction * point.transmittance * fade_at(fog, there.point) / chance;
-    if (!(chance > 0)) return;
+    const double by_fog = fire_ray.seen.pdf(point.extinction, point.transmittance);
+    const double aimed = double{place.pdf} * away * away;
+    const double pdf =
+        fire_ray.rounds * (aimed * (angles.pdf(point.distance) + by_fog) + by_fog * by_phase * place.line_pdf);
+    const double weight = share * point.extinction * point.transmittance * fade_at(fog, there.point) / pdf;
+    if (!(pdf > 0)) return;
     const ScatterPath path{
         fire_ray.number, {there.point, offset / away, away}, albedo * place.emission * static_cast<float>(weight)};
     if (max_component(path.light) > 0) fire_ray.paths.push_back(path);
 }
 
 // Samples a direction by the phase function. The actual PDF of the sampled fire point differs from the approximate
-// line_density in the balance heuristic; the ratio goes into the share.
+// line_pdf in the balance heuristic; the ratio goes into the share.
 void append_lines(const FireRay& fire_ray, const FirePoint& point, float which, vec2 u, float v) {
     const vec3 direction = direction_by_phase(fire_ray.fog.media, point.there, which, u);
     for (size_t field = 0; field < fire_ray.fire.fields.size(); ++field) {
         const EmissionOnLine hit = emission_on_line(fire_ray.fire, field, {point.there.point, direction, infinity}, v);
-        if (!(hit.inverse_density > 0)) continue;
+        if (!(hit.inverse_pdf > 0)) continue;
         append_path(fire_ray, point, hit.sample, fire_ray.around(hit.sample.position),
-                    double{hit.inverse_density} * hit.sample.line_density);
+                    double{hit.inverse_pdf} * hit.sample.line_pdf);
     }
 }
 

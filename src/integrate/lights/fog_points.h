@@ -21,7 +21,7 @@ struct FogSampler {
 
     // Transmittance to the eye from distance t in a piece.
     double transmittance(size_t piece, double t) const { return std::exp(-factor * pieces.depth_at(piece, t)); }
-    double density(double extinction, double transmittance) const { return extinction * transmittance / whole; } // 1/m
+    double pdf(double extinction, double transmittance) const { return extinction * transmittance / whole; } // 1/m
     double distance(double u, size_t& piece) const;
 };
 FogSampler fog_sampler(const FogPieces& pieces, double factor);
@@ -32,7 +32,7 @@ struct EquiAngularSampler {
     Interval<double> stretch{};
 
     bool empty() const { return !(angles.to > angles.from); }
-    double density(double t) const { return t >= stretch.low && t <= stretch.high ? angles.density(t) : 0; } // 1/m
+    double pdf(double t) const { return t >= stretch.low && t <= stretch.high ? angles.pdf(t) : 0; } // 1/m
 };
 // `radius` is a lower bound on the distance between ray and point.
 EquiAngularSampler equi_angular_sampler(const Ray& ray, const FogPieces& fog, dvec3 point, double radius,

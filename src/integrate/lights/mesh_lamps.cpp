@@ -58,7 +58,7 @@ std::vector<SurfaceEmission> points_of(const EmissiveTriangles& glow, const Occl
         const EmissivePoint point = sample_triangles(glow, surfaces, u, {pair.x, pair.y});
         const auto found = std::ranges::upper_bound(glow.cumulative, double{u});
         const size_t triangle = std::min<size_t>(found - glow.cumulative.begin(), glow.triangles.size() - 1);
-        const dvec3 candela = dvec3(point.emission) / (double{point.density} * points_asked);
+        const dvec3 candela = dvec3(point.emission) / (double{point.pdf} * points_asked);
         if (const double weight = luminance(vec3(candela)); weight > 0 && std::isfinite(weight))
             points.push_back(
                 {dvec3(point.position), dvec3(point.normal), candela, weight, glow.triangles[triangle].instance});

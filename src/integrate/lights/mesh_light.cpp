@@ -34,12 +34,11 @@ void append_path(const ScatteringFog& fog, const Ray& ray, const FogSampler& see
     const float away = glm::length(offset);
     if (!(extinction > 0) || !(away > 0)) return;
     const double transmittance = seen.transmittance(piece, t);
-    const double chance =
-        count * (angles.density(t) + seen.density(extinction, transmittance)) * double{target.density} * away * away;
-    if (!(chance > 0)) return;
+    const double pdf = count * (angles.pdf(t) + seen.pdf(extinction, transmittance)) * double{target.pdf} * away * away;
+    if (!(pdf > 0)) return;
     const vec3 direction = offset / away;
     const double weight =
-        extinction * transmittance * std::abs(glm::dot(target.normal, direction)) * fade_at(fog, there.point) / chance;
+        extinction * transmittance * std::abs(glm::dot(target.normal, direction)) * fade_at(fog, there.point) / pdf;
     const ScatterPath path{number,
                            {there.point, direction, away * 0.9999f},
                            scattered(fog.media, there, direction).first * target.emission * static_cast<float>(weight)};

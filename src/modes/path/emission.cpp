@@ -14,25 +14,25 @@ struct FireShares {
     float picked = 0, collided = 0;
 };
 FireShares fire_shares(const Segment& line, const EmissionSample& place, float distance, float colliding) {
-    const float found = place.line_density + colliding, away = line.traveled + distance;
-    const bool aims = line.vertex.density > 0; // no connections from the eye
-    const float chance = aims ? found + place.density * away * away / line.vertex.density : found;
-    if (!(chance > 0)) return {};
-    return {place.line_density / chance, colliding / chance};
+    const float found = place.line_pdf + colliding, away = line.traveled + distance;
+    const bool aims = line.vertex.pdf > 0; // no connections from the eye
+    const float pdf = aims ? found + place.pdf * away * away / line.vertex.pdf : found;
+    if (!(pdf > 0)) return {};
+    return {place.line_pdf / pdf, colliding / pdf};
 }
 
 void gather_field(const PathState& state, Segment& line, size_t number) {
     Ray stretch = line.rest;
     stretch.t_max = line.end;
     const EmissionOnLine hit = emission_on_line(*state.tracer.fire, number, stretch, line.numbers(use_emission).x);
-    if (!(hit.inverse_density > 0)) return;
+    if (!(hit.inverse_pdf > 0)) return;
     int& lookups = state.results[line.vertex.lane].steps;
     ++lookups;
     if (!(max_component(hit.sample.emission) > 0)) return;
     const float colliding = collision_pdf(state.snapshot, hit.sample.position, lookups);
     const float share = line.transmittance * line_transmittance(state, line, {0, hit.distance}) *
                         fire_shares(line, hit.sample, hit.distance, colliding).picked;
-    add_light(state, line, hit.sample.emission * (share * hit.inverse_density), OtherLight::emission,
+    add_light(state, line, hit.sample.emission * (share * hit.inverse_pdf), OtherLight::emission,
               state.order == 0 || line.vertex.in_fog);
 }
 }

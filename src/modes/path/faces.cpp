@@ -32,7 +32,7 @@ float mis_weight(const PathState& state, const FogPoint& fog, const Connection& 
     const Light& light = state.snapshot.lights[static_cast<size_t>(connection.light_index)];
     if (!finds_face(light, connection.point, peak)) return 1;
     const float aimed = aimed_count(state.order);
-    return aimed / (aimed + connection.steradians * fog.density(state.snapshot, cosine));
+    return aimed / (aimed + connection.steradians * fog.phase_pdf(state.snapshot, cosine));
 }
 
 void hit_faces(const PathState& state, Segment& line) {
@@ -43,7 +43,7 @@ void hit_faces(const PathState& state, Segment& line) {
         if (!finds_face(light, from.ray.origin, from.peak)) continue;
         const float away = area_hit(*light.area, {from.ray.origin, from.ray.direction, infinity});
         if (away == infinity || !(away > line.traveled && away <= line.traveled + line.end)) continue;
-        const float own = from.density * area_steradians(*light.area, from.ray.origin, from.ray.direction, away);
+        const float own = from.pdf * area_steradians(*light.area, from.ray.origin, from.ray.direction, away);
         const vec3 radiance = radiance_of(light) * face_texture(*light.area, from.ray.at(away)) * light.volume_scale;
         const float share = line.transmittance * line_transmittance(state, line, {0, away - line.traveled});
         add_light(state, line, radiance * (share * own / (aimed + own)), i, from.in_fog);

@@ -56,8 +56,9 @@ void find_candidates(const PathState& state, const Segment& line, std::span<Cand
     float passed = 0; // probability of all earlier lights
     for (size_t i = 0; i < candidates.size(); ++i) {
         const float wanted = (static_cast<float>(i) + u.x) / count;
-        while (light + 1 < lights.size() && passed + lights[light].chance <= wanted) passed += lights[light++].chance;
-        if (!(lights[light].chance > 0)) continue;
+        while (light + 1 < lights.size() && passed + lights[light].probability <= wanted)
+            passed += lights[light++].probability;
+        if (!(lights[light].probability > 0)) continue;
         const auto turned = [&](float x) { // rotated by the golden ratio from candidate to candidate
             const float sum = x + static_cast<float>(i) * 0.618034f;
             return sum - std::floor(sum);
@@ -85,12 +86,12 @@ void weigh(const PathState& state, const Segment& line, const Connection& connec
     if (!(fog.total > 0)) return;
     const LineLight& along = state.scratch.lights[connection.light_index];
     const float guess = guessed_transmittance(snapshot, line, candidate.distance);
-    const float chance = static_cast<float>(candidate_count(state)) * along.chance * along.density(candidate.distance),
-                other = fog.total * guess * pick_chance(snapshot, fog.position, connection.light_index);
-    if (!(chance > 0)) return;
+    const float pdf = static_cast<float>(candidate_count(state)) * along.probability * along.pdf(candidate.distance),
+                other = fog.total * guess * pick_probability(snapshot, fog.position, connection.light_index);
+    if (!(pdf > 0)) return;
     const float cosine = glm::dot(connection.to_light, line.rest.direction);
     const float share =
-        fog.total / (chance + other) * mis_weight(state, fog, connection, peak_for_faces(state.tracer, fog), cosine);
+        fog.total / (pdf + other) * mis_weight(state, fog, connection, peak_for_faces(state.tracer, fog), cosine);
     candidate.scattered = fog.scattered(snapshot, cosine) * share * connection.light;
     candidate.brightness = luminance(candidate.scattered) * guess;
 }
@@ -140,7 +141,7 @@ void gather_sky_by(const PathState& state, Segment& line, const FogPoint& fog, s
     gather_sky(
         state, line, fog.position, vec3(0), snapshot.environment->volume_scale, state.order == 0 || line.vertex.in_fog,
         [&](vec3 direction) { return scattered * phase_value(optics.phase, cosine(direction)); },
-        [&](vec3 direction) { return fog.density(snapshot, cosine(direction)); });
+        [&](vec3 direction) { return fog.phase_pdf(snapshot, cosine(direction)); });
 }
 
 // Adds environment light scattered by thin fog at one sampled distance per medium; thicker fog scatters it at
@@ -171,10 +172,10 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
     const bool in_fog = state.order == 0 || line.vertex.in_fog;
     int& lookups = state.results[line.vertex.lane].steps;
     const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
-    if (pick.chance > 0) {
+    if (pick.probability > 0) {
         const LineLight& along = state.scratch.lights[pick.light];
-        const float mine = fog.total * guessed_transmittance(snapshot, line, distance) * pick.chance,
-                    other = static_cast<float>(candidate_count(state)) * along.chance * along.density(distance);
+        const float mine = fog.total * guessed_transmittance(snapshot, line, distance) * pick.probability,
+                    other = static_cast<float>(candidate_count(state)) * along.probability * along.pdf(distance);
         const Connection connection =
             connection_to_light(state.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft));
         const Light& light = snapshot.lights[static_cast<size_t>(pick.light)];
@@ -182,16 +183,16 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
         const float cosine = glm::dot(connection.to_light, line.rest.direction);
         const float weight = mine > 0 ? mine / (mine + other) : (other > 0 ? 0.0f : 1.0f);
         const float share = weight * mis_weight(state, fog, connection, peak, cosine);
-        queue(state, line, connection, fog.scattered(snapshot, cosine) * irradiance * (share / pick.chance), in_fog);
+        queue(state, line, connection, fog.scattered(snapshot, cosine) * irradiance * (share / pick.probability),
+              in_fog);
     }
     if (state.tracer.fire) {
         const EmissionSample target = pick_fire(state, line);
         const Connection connection = connection_to_fire(fog.position, target);
         const float cosine = glm::dot(connection.to_light, line.rest.direction), away = connection.fog_length;
-        const float found = target.line_density + collision_pdf(snapshot, target.position, lookups);
-        const float chance = target.density * away * away + fog.density(snapshot, cosine) * found;
-        if (chance > 0)
-            queue(state, line, connection, fog.scattered(snapshot, cosine) * target.emission / chance, in_fog);
+        const float found = target.line_pdf + collision_pdf(snapshot, target.position, lookups);
+        const float pdf = target.pdf * away * away + fog.phase_pdf(snapshot, cosine) * found;
+        if (pdf > 0) queue(state, line, connection, fog.scattered(snapshot, cosine) * target.emission / pdf, in_fog);
     }
     if (snapshot.environment) gather_sky_at_collision(state, line, fog);
     if (!state.tracer.emitters) return;
@@ -199,11 +200,11 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
                                                   line.numbers(use_light).y, line.numbers(use_glow));
     const Connection connection = connection_to_emitter(fog.position, target);
     const float facing = std::abs(glm::dot(target.normal, connection.to_light));
-    const float chance = target.density * connection.fog_length * connection.fog_length / facing;
+    const float pdf = target.pdf * connection.fog_length * connection.fog_length / facing;
     const float cosine = glm::dot(connection.to_light, line.rest.direction);
-    if (facing > 0 && chance > 0)
+    if (facing > 0 && pdf > 0)
         queue(state, line, connection,
-              fog.scattered(snapshot, cosine) * target.emission / (chance + fog.density(snapshot, cosine)), in_fog);
+              fog.scattered(snapshot, cosine) * target.emission / (pdf + fog.phase_pdf(snapshot, cosine)), in_fog);
 }
 
 // If the path collides with fog on this segment, gathers light there and scatters the path.
@@ -233,10 +234,10 @@ void collide(const PathState& state, Segment& line) {
     const float peak = peak_for_faces(state.tracer, fog);
     gather_at_collision(state, line, nearest, fog, peak);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
-    const float density = fog.density(snapshot, glm::dot(direction, line.rest.direction));
+    const float pdf = fog.phase_pdf(snapshot, glm::dot(direction, line.rest.direction));
     const float sky_scale = state.tracer.finds_sky ? snapshot.environment->volume_scale : 0;
     const vec3 albedo = fog.albedo_of(optics, static_cast<size_t>(hit));
-    scatter(state, line, {{fog.position, direction}, albedo, density, sky_scale, peak}, in_fog);
+    scatter(state, line, {{fog.position, direction}, albedo, pdf, sky_scale, peak}, in_fog);
 }
 }
 

@@ -55,7 +55,7 @@ LineLight light_on_line(const Light& light, const Ray& line, Interval<float> str
     LineLight along;
     along.reach = stretch;
     if (is_distant(light)) {
-        along.chance = volume_brightness(light) * along.reach.length();
+        along.probability = volume_brightness(light) * along.reach.length();
         return along;
     }
     const dvec3 offset = dvec3(light.position) - dvec3(line.origin), direction(line.direction);
@@ -66,8 +66,8 @@ LineLight light_on_line(const Light& light, const Ray& line, Interval<float> str
                                         along.reach.low, along.reach.high);
     const double angle = along.angles.to - along.angles.from;
     if (angle > 0)
-        along.chance = static_cast<float>(volume_brightness(light) * angle / along.angles.height) *
-                       filter_mean(light, line, along);
+        along.probability = static_cast<float>(volume_brightness(light) * angle / along.angles.height) *
+                            filter_mean(light, line, along);
     return along;
 }
 
@@ -93,9 +93,9 @@ float LineLight::distance(float u) const {
     return std::clamp(static_cast<float>(angles.at(u).t), reach.low, reach.high);
 }
 
-float LineLight::density(float t) const {
-    if (!(chance > 0) || !(t >= reach.low && t <= reach.high)) return 0;
-    return angles.height == 0 ? 1 / reach.length() : static_cast<float>(angles.density(t));
+float LineLight::pdf(float t) const {
+    if (!(probability > 0) || !(t >= reach.low && t <= reach.high)) return 0;
+    return angles.height == 0 ? 1 / reach.length() : static_cast<float>(angles.pdf(t));
 }
 
 void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineLight>& lights) {
@@ -104,10 +104,10 @@ void lights_on_line(const Snapshot& snapshot, const Ray& line, std::vector<LineL
     double total = 0;
     for (const Light& light : snapshot.lights) {
         lights.push_back(stretch.empty() ? LineLight{} : light_on_line(light, line, stretch));
-        total += lights.back().chance;
+        total += lights.back().probability;
     }
     if (total > 0)
-        for (LineLight& along : lights) along.chance = static_cast<float>(along.chance / total);
+        for (LineLight& along : lights) along.probability = static_cast<float>(along.probability / total);
 }
 
 LightPick pick_light(const Snapshot& snapshot, vec3 point, float u) {
@@ -128,7 +128,7 @@ LightPick pick_light(const Snapshot& snapshot, const SurfacePoint& surface, floa
     });
 }
 
-float pick_chance(const Snapshot& snapshot, vec3 point, int light) {
+float pick_probability(const Snapshot& snapshot, vec3 point, int light) {
     double total = 0, wanted = 0;
     for (size_t i = 0; i < snapshot.lights.size(); ++i) {
         const double share =

@@ -23,18 +23,18 @@ vec2 screen_position(const PathTracer& tracer, const Ray& ray) {
 }
 
 // Solid-angle pdf with which light sampling at the start of the line picks this point of an emissive surface.
-float target_density(const PathTracer& tracer, const Segment& line, const SurfacePoint& surface, int instance,
-                     int triangle) {
-    const float density = tracer.emitters ? triangle_density(*tracer.emitters, instance, triangle) : 0;
+float target_pdf(const PathTracer& tracer, const Segment& line, const SurfacePoint& surface, int instance,
+                 int triangle) {
+    const float per_area = tracer.emitters ? triangle_pdf(*tracer.emitters, instance, triangle) : 0;
     const float distance = line.traveled + line.end,
                 facing = std::abs(glm::dot(surface.face_normal, line.rest.direction));
-    return density > 0 ? density * distance * distance / std::max(facing, 1e-12f) : 0;
+    return per_area > 0 ? per_area * distance * distance / std::max(facing, 1e-12f) : 0;
 }
 
 void gather_at_surface(const PathState& state, Segment& line, const SurfacePoint& surface, float share) {
     const vec3 reflected = surface.base_color * (share / pi);
     const LightPick pick = pick_light(state.snapshot, surface, line.numbers(use_surface_light).x);
-    if (pick.chance > 0) {
+    if (pick.probability > 0) {
         Connection connection = connection_to_light(state.tracer, surface.position, pick.light, pick.to_light,
                                                     line.numbers(use_surface_soft));
         connection.face_normal = surface.face_normal;
@@ -43,7 +43,7 @@ void gather_at_surface(const PathState& state, Segment& line, const SurfacePoint
             const float cosine = std::max(glm::dot(surface.normal, connection.to_light), 0.0f);
             irradiance = connection.irradiance * (light.surface_scale * cosine);
         }
-        queue(state, line, connection, reflected * irradiance / pick.chance, line.vertex.in_fog);
+        queue(state, line, connection, reflected * irradiance / pick.probability, line.vertex.in_fog);
     }
     if (state.tracer.fire) {
         const EmissionSample target = pick_fire(state, line);
@@ -51,10 +51,10 @@ void gather_at_surface(const PathState& state, Segment& line, const SurfacePoint
         connection.face_normal = surface.face_normal;
         const float cosine = glm::dot(surface.normal, connection.to_light), away = connection.fog_length;
         const float found =
-            target.line_density + collision_pdf(state.snapshot, target.position, state.results[line.vertex.lane].steps);
-        const float chance = target.density * away * away + std::max(cosine, 0.0f) / pi * found;
-        if (cosine > 0 && chance > 0)
-            queue(state, line, connection, reflected * target.emission * (cosine / chance), line.vertex.in_fog);
+            target.line_pdf + collision_pdf(state.snapshot, target.position, state.results[line.vertex.lane].steps);
+        const float pdf = target.pdf * away * away + std::max(cosine, 0.0f) / pi * found;
+        if (cosine > 0 && pdf > 0)
+            queue(state, line, connection, reflected * target.emission * (cosine / pdf), line.vertex.in_fog);
     }
     if (state.snapshot.environment && is_lit(*state.snapshot.environment, state.snapshot, surface.instance))
         gather_sky(
@@ -69,9 +69,9 @@ void gather_at_surface(const PathState& state, Segment& line, const SurfacePoint
     connection.face_normal = surface.face_normal;
     const float cosine = glm::dot(surface.normal, connection.to_light),
                 facing = std::abs(glm::dot(target.normal, connection.to_light));
-    const float chance = target.density * connection.fog_length * connection.fog_length / facing;
-    if (cosine > 0 && facing > 0 && chance > 0)
-        queue(state, line, connection, reflected * target.emission * (cosine / (chance + cosine / pi)),
+    const float pdf = target.pdf * connection.fog_length * connection.fog_length / facing;
+    if (cosine > 0 && facing > 0 && pdf > 0)
+        queue(state, line, connection, reflected * target.emission * (cosine / (pdf + cosine / pi)),
               line.vertex.in_fog);
 }
 
@@ -92,8 +92,8 @@ vec3 surroundings(const PathState& state, const Segment& line) {
     const PathVertex& from = line.vertex;
     if (!(from.sky_scale > 0)) return state.snapshot.ambient;
     const Environment& environment = *state.snapshot.environment;
-    const float aimed = environment_density(environment, from.ray.direction);
-    const float weight = from.sky_scale * from.density / (from.density + aimed);
+    const float aimed = environment_pdf(environment, from.ray.direction);
+    const float weight = from.sky_scale * from.pdf / (from.pdf + aimed);
     return state.snapshot.ambient + environment_radiance(environment, from.ray.direction) * weight;
 }
 
@@ -218,7 +218,7 @@ void scatter(const PathState& state, const Segment& line, const ScatterEvent& ev
     const bool blind = state.order + 1 >= state.tracer.settings.orders && !looks;
     PathVertex next = line.vertex;
     next.ray = event.ray, next.skip = 0, next.in_fog = in_fog;
-    next.density = event.density, next.sky_scale = event.sky_scale, next.peak = event.peak;
+    next.pdf = event.pdf, next.sky_scale = event.sky_scale, next.peak = event.peak;
     next.throughput *= event.share;
     const float brightness = max_component(next.throughput);
     if (blind || !(brightness > 0)) return;
@@ -235,9 +235,8 @@ void hit_surface(const PathState& state, Segment& line, const SurfacePoint& surf
     if (holdout) state.results[line.vertex.lane].holdout += share;
     // The eye sees emissive surfaces even if they illuminate nothing.
     if (!holdout && (state.tracer.surfaces_emit || state.order == 0) && max_component(surface.emission) > 0) {
-        const float aimed =
-            line.vertex.density > 0 ? target_density(state.tracer, line, surface, instance, triangle) : 0;
-        const float weight = aimed > 0 ? line.vertex.density / (line.vertex.density + aimed) : 1;
+        const float aimed = line.vertex.pdf > 0 ? target_pdf(state.tracer, line, surface, instance, triangle) : 0;
+        const float weight = aimed > 0 ? line.vertex.pdf / (line.vertex.pdf + aimed) : 1;
         add_light(state, line, surface.emission * (share * weight), OtherLight::emission, line.vertex.in_fog);
     }
     if (state.scatters && share > 0 && !holdout) gather_at_surface(state, line, surface, share);

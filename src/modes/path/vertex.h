@@ -37,7 +37,7 @@ struct PathVertex {
     Ray ray;
     float skip = 0;      // surfaces nearer than this are ignored
     vec3 throughput{1};  // fraction of light that arrives at the eye along the path
-    float density = 0;   // solid-angle pdf of the line's direction; 0 at the eye
+    float pdf = 0;       // solid-angle pdf of the line's direction; 0 at the eye
     float sky_scale = 0; // factor on environment light that the line finds; 0 = it does not look for it
     float peak = 0;      // of the phase function at its start, 1/sr, if the line looks for faces of lights; else 0
     bool in_fog = false; // the path's first event was in fog
@@ -84,7 +84,7 @@ struct FogPoint {
             }
         return sum;
     }
-    float density(const Snapshot& snapshot, float cosine) const {
+    float phase_pdf(const Snapshot& snapshot, float cosine) const {
         float sum = 0;
         for (size_t m = 0; m < extinction.size(); ++m)
             if (extinction[m] > 0) sum += extinction[m] / total * phase_value(snapshot.media[m].optics.phase, cosine);
@@ -127,23 +127,23 @@ void queue(const PathState& state, Segment& line, Connection connection, vec3 li
 EmissionSample pick_fire(const PathState& state, const Segment& line);
 
 // Adds environment light from one sampled direction, at a point that scatters `share(direction)`, 1/sr, into the line
-// and samples directions itself with the pdf `density(direction)`, 1/sr.
-template<class Share, class Density>
+// and samples directions itself with the `pdf(direction)`, 1/sr.
+template<class Share, class Pdf>
 void gather_sky(const PathState& state, Segment& line, vec3 point, vec3 face_normal, float scale, bool in_fog,
-                const Share& share, const Density& density) {
+                const Share& share, const Pdf& pdf) {
     const EnvironmentSample sky = sample_environment(*state.snapshot.environment, line.numbers(use_sky));
-    const float own = state.tracer.finds_sky ? density(sky.direction) : 0;
-    if (!(sky.density > 0)) return;
+    const float own = state.tracer.finds_sky ? pdf(sky.direction) : 0;
+    if (!(sky.pdf > 0)) return;
     Connection connection = connection_to_sky(*state.snapshot.environment, point, sky.direction);
     connection.face_normal = face_normal;
-    queue(state, line, connection, share(sky.direction) * sky.radiance * (scale / (sky.density + own)), in_fog);
+    queue(state, line, connection, share(sky.direction) * sky.radiance * (scale / (sky.pdf + own)), in_fog);
 }
 
 // A scattering event: the path's next line, its weight, and values for its PathVertex.
 struct ScatterEvent {
     Ray ray;
     vec3 share{1};
-    float density = 0, sky_scale = 0, peak = 0;
+    float pdf = 0, sky_scale = 0, peak = 0;
 };
 
 // Starts the path's next line, unless Russian roulette ends the path.

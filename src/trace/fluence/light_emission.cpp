@@ -210,10 +210,10 @@ vec3 LightSquare::share(const Ray& ray) const {
     const vec3 direction = ray.direction;
     if (left_out && covers(*left_out, ray)) return vec3(0);
     if (environment) {
-        const float density = environment_density(*environment, -direction);
-        if (!(density > 0)) return vec3(0);
+        const float pdf = environment_pdf(*environment, -direction);
+        if (!(pdf > 0)) return vec3(0);
         const vec3 mean = environment->mean();
-        return environment_radiance(*environment, -direction) / glm::max(mean, 1e-30f) / (4 * pi * density);
+        return environment_radiance(*environment, -direction) / glm::max(mean, 1e-30f) / (4 * pi * pdf);
     }
     vec3 share(has_cone(*light) ? cone_falloff(*light).at(glm::dot(direction, light->direction)) : 1.0f);
     if (light->filter) share *= vec3(filtered(*light->filter, dvec3(direction)));

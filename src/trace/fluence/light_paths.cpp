@@ -52,8 +52,8 @@ LightPath start(const LightTracing& tracing, int64_t index, int64_t total) {
     const double wanted = (static_cast<double>(index) + path.random.next()) / static_cast<double>(total);
     const auto found = std::ranges::upper_bound(sums, wanted * sums.back());
     path.stratum = std::min<size_t>(static_cast<size_t>(found - sums.begin()), sums.size() - 1);
-    const double chance = sums[path.stratum] - (path.stratum > 0 ? sums[path.stratum - 1] : 0.0);
-    if (!(chance > 0)) return path;
+    const double probability = sums[path.stratum] - (path.stratum > 0 ? sums[path.stratum - 1] : 0.0);
+    if (!(probability > 0)) return path;
 
     const int side = tracing.strata.side, count = side * side, stratum = static_cast<int>(path.stratum) % count;
     path.square = static_cast<int>(path.stratum) / count;
@@ -67,7 +67,7 @@ LightPath start(const LightTracing& tracing, int64_t index, int64_t total) {
     if (tracing.endless && is_distant(*square.light))
         left *= static_cast<float>(
             std::exp(-optical_depth(tracing.snapshot.media, {path.ray.origin, -path.ray.direction, infinity})));
-    path.light = square.power * (left / static_cast<float>(chance * count * static_cast<double>(total)));
+    path.light = square.power * (left / static_cast<float>(probability * count * static_cast<double>(total)));
     path.alive = max_component(path.light) > 0;
     return path;
 }

@@ -24,13 +24,13 @@ struct EmittedRays {
     }
 };
 
-// `share`: density used in the balance heuristic over the actual one; 1 for places picked by power.
+// `share`: pdf used in the balance heuristic over the actual one; 1 for places picked by power.
 void set_place(const SurfacePoint& point, const EmissionSample& place, float share, size_t i, EmittedRays& to) {
     const vec3 offset = place.position - point.position;
     const float away = glm::length(offset), cosine = away > 0 ? glm::dot(point.normal, offset) / away : 0;
-    const float chance = place.density * away * away + cosine / pi * place.line_density;
-    if (!(cosine > 0) || !(chance > 0) || !(share > 0)) return;
-    to.set(i, point, offset / away, away, point.base_color / pi * place.emission * (cosine * share / chance));
+    const float pdf = place.pdf * away * away + cosine / pi * place.line_pdf;
+    if (!(cosine > 0) || !(pdf > 0) || !(share > 0)) return;
+    to.set(i, point, offset / away, away, point.base_color / pi * place.emission * (cosine * share / pdf));
 }
 
 void add_visible(const Snapshot& snapshot, std::span<const SurfacePoint> points, const EmittedRays& to, float scale,
@@ -66,8 +66,8 @@ void add_fire(const EmissiveBricks& fire, const Snapshot& snapshot, std::span<co
         const vec3 direction = cosine_direction(points[i].normal, glm::fract(pair + vec2(0.618034f, 0.754878f)));
         for (size_t field = 0; field < fire.fields.size(); ++field) {
             const EmissionOnLine hit = emission_on_line(fire, field, {points[i].position, direction, infinity}, along);
-            if (hit.inverse_density > 0)
-                set_place(points[i], hit.sample, hit.inverse_density * hit.sample.line_density, i, on_lines[field]);
+            if (hit.inverse_pdf > 0)
+                set_place(points[i], hit.sample, hit.inverse_pdf * hit.sample.line_pdf, i, on_lines[field]);
         }
     }
     add_visible(snapshot, points, picked, scale, radiance);
@@ -85,7 +85,7 @@ void add_surfaces(const EmissiveTriangles& emissive, const Snapshot& snapshot, s
         const float away = glm::length(offset), cosine = away > 0 ? glm::dot(point.normal, offset) / away : 0;
         if (!(cosine > 0)) continue;
         const vec3 direction = offset / away;
-        const float seen = cosine * std::abs(glm::dot(target.normal, direction)) / (target.density * away * away);
+        const float seen = cosine * std::abs(glm::dot(target.normal, direction)) / (target.pdf * away * away);
         picked.set(i, point, direction, away * 0.9999f, point.base_color / pi * target.emission * seen);
     }
     add_visible(snapshot, points, picked, scale, radiance);

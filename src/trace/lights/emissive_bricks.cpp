@@ -104,7 +104,7 @@ EmissionSample sample_emission(const EmissiveBricks& fire, float u, vec3 v) {
 namespace {
 // A point uniformly distributed within one cell.
 struct PickedCell {
-    double distance = 0, inverse_density = 0;
+    double distance = 0, inverse_pdf = 0;
 };
 PickedCell pick_cell(const BrickPool& luminance, const Ray& line, float u) {
     static thread_local std::vector<EmissionCell> cells;
@@ -127,8 +127,8 @@ PickedCell pick_cell(const BrickPool& luminance, const Ray& line, float u) {
 
 EmissionOnLine emission_on_line(const EmissiveBricks& fire, size_t field, const Ray& line, float u) {
     const PickedCell picked = pick_cell(*fire.fields[field].density.bricks, line, u);
-    if (!(picked.inverse_density > 0)) return {};
+    if (!(picked.inverse_pdf > 0)) return {};
     const auto distance = static_cast<float>(picked.distance);
-    return {emission_sample_at(fire, field, line.at(distance)), distance, static_cast<float>(picked.inverse_density)};
+    return {emission_sample_at(fire, field, line.at(distance)), distance, static_cast<float>(picked.inverse_pdf)};
 }
 }

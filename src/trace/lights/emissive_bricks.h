@@ -15,10 +15,10 @@ struct EmissiveBricks {
         uint32_t medium = 0; // index into `fields`
         uint32_t cell = 0;   // index into its BrickPool::index
     };
-    // Sampling densities of a field.
+    // Pdfs of sampling a field.
     struct FieldPdfs {
         std::vector<float> per_volume; // of the points of each cell, 1/m³
-        float line_scale = 0;          // factor from a brick's maximum to the density along a line, 1/m
+        float line_scale = 0;          // factor from a brick's maximum to the pdf along a line, 1/m
     };
     std::vector<Medium> fields;     // media that only emit
     std::vector<Brick> bricks;      // those that emit
@@ -29,11 +29,11 @@ struct EmissiveBricks {
 // The emission of a snapshot's media that only emit; null if there is none. Cached while they do not change.
 std::shared_ptr<const EmissiveBricks> emissive_bricks(const Snapshot& snapshot);
 
-// An emitting point and the two densities it is sampled with: by volume, and along a line through it.
+// An emitting point and the two pdfs it is sampled with: by volume, and along a line through it.
 struct EmissionSample {
     vec3 position{0}, emission{0}; // emission: radiance per meter
-    float density = 0;             // per m³
-    float line_density = 0;        // 1/m: approximates that of emission_on_line(), by position alone
+    float pdf = 0;                 // 1/m³
+    float line_pdf = 0;            // 1/m: approximates that of emission_on_line(), by position alone
 };
 EmissionSample sample_emission(const EmissiveBricks& fire, float u, vec3 v);
 EmissionSample emission_sample_at(const EmissiveBricks& fire, size_t field, vec3 position);
@@ -41,7 +41,7 @@ EmissionSample emission_sample_at(const EmissiveBricks& fire, size_t field, vec3
 // A point on a line 0..t_max, sampled in proportion to the maximum brightness of each cell along it.
 struct EmissionOnLine {
     EmissionSample sample;
-    float distance = 0, inverse_density = 0; // meters; inverse_density: 0 = nothing was found
+    float distance = 0, inverse_pdf = 0; // meters; inverse_pdf: 0 = nothing was found
 };
 EmissionOnLine emission_on_line(const EmissiveBricks& fire, size_t field, const Ray& line, float u);
 }

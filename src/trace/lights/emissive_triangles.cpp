@@ -73,7 +73,7 @@ EmissivePoint sample_triangles(const EmissiveTriangles& emissive, const Occluder
     return {surface.position, surface.face_normal, surface.emission, triangle.probability / triangle.area};
 }
 
-float triangle_density(const EmissiveTriangles& emissive, int instance, int triangle) {
+float triangle_pdf(const EmissiveTriangles& emissive, int instance, int triangle) {
     if (emissive.by_shape[instance].empty()) return 0;
     const int index = emissive.by_shape[instance][triangle];
     return index < 0 ? 0 : emissive.triangles[index].probability / emissive.triangles[index].area;

@@ -29,10 +29,10 @@ std::shared_ptr<const EmissiveTriangles> emissive_triangles(const Snapshot& snap
 struct EmissivePoint {
     vec3 position{0}, normal{0}; // of the face
     vec3 emission{0};            // radiance
-    float density = 0;           // sampling density, 1/m²
+    float pdf = 0;               // 1/m²
 };
 EmissivePoint sample_triangles(const EmissiveTriangles& emissive, const Occluders& surfaces, float u, vec2 v);
 
-// Density, 1/m², with which sample_triangles() picks points of a triangle; 0 if it does not emit.
-float triangle_density(const EmissiveTriangles& emissive, int instance, int triangle);
+// Pdf, 1/m², with which sample_triangles() picks points of a triangle; 0 if it does not emit.
+float triangle_pdf(const EmissiveTriangles& emissive, int instance, int triangle);
 }

@@ -52,8 +52,8 @@ DirectionTable empty_table(const BackgroundState& map) {
     return table;
 }
 
-// Cumulative probabilities, and the densities of cells from their power.
-void add_chances(const std::vector<double>& powers, double total, DirectionTable& table) {
+// Cumulative probabilities, and the pdfs of cells from their power.
+void add_probabilities(const std::vector<double>& powers, double total, DirectionTable& table) {
     table.rows.push_back(0);
     for (int y = 0; y < table.cells.y; ++y) {
         const double* row = &powers[static_cast<size_t>(y) * table.cells.x];
@@ -64,11 +64,11 @@ void add_chances(const std::vector<double>& powers, double total, DirectionTable
         table.rows.push_back(table.rows.back() + sum / total);
         for (int x = 0; x < table.cells.x; ++x) {
             const double width = 2 * std::numbers::pi * (column_edge(table, x + 1) - column_edge(table, x));
-            table.densities.push_back(
+            table.pdfs.push_back(
                 static_cast<float>(row[x] / (total * width * (row_edge(table, y) - row_edge(table, y + 1)))));
         }
     }
-    for (double& chance : table.rows) chance /= table.rows.back();
+    for (double& sum : table.rows) sum /= table.rows.back();
 }
 
 std::shared_ptr<const DirectionTable> make_table(const BackgroundState& map) {
@@ -89,7 +89,7 @@ std::shared_ptr<const DirectionTable> make_table(const BackgroundState& map) {
     }
     table.mean = vec3(sum / (4 * std::numbers::pi));
     if (!(total > 0)) return nullptr;
-    add_chances(powers, total, table);
+    add_probabilities(powers, total, table);
     return std::make_shared<const DirectionTable>(std::move(table));
 }
 
@@ -132,16 +132,16 @@ EnvironmentSample sample_environment(const Environment& environment, vec2 u) {
     EnvironmentSample sample;
     sample.direction = glm::normalize(vec3(across * std::sin(turn), height, -across * std::cos(turn)));
     sample.radiance = environment_radiance(environment, sample.direction);
-    sample.density = table.densities[static_cast<size_t>(row.index) * table.cells.x + column.index];
+    sample.pdf = table.pdfs[static_cast<size_t>(row.index) * table.cells.x + column.index];
     return sample;
 }
 
-float environment_density(const Environment& environment, vec3 direction) {
+float environment_pdf(const Environment& environment, vec3 direction) {
     const DirectionTable& table = *environment.table;
     const vec2 uv = lat_long_position(direction, environment.map.rotation);
     const ivec2 texel = glm::clamp(ivec2(uv * vec2(table.texels)), ivec2(0), table.texels - 1);
     const ivec2 cell = texel / table.factor;
-    return table.densities[static_cast<size_t>(cell.y) * table.cells.x + cell.x];
+    return table.pdfs[static_cast<size_t>(cell.y) * table.cells.x + cell.x];
 }
 
 std::shared_ptr<const Environment> environment_at(const Scene& scene, const Moment& moment, ivec2 links,

@@ -17,7 +17,7 @@ struct DirectionTable {
     ivec2 cells{1};  // each `factor` texels wide and high; the last ones may be smaller
     int factor = 1;
     std::vector<double> rows, columns; // cumulative: cells.y + 1, and cells.y × (cells.x + 1)
-    std::vector<float> densities;      // of each cell, 1/sr
+    std::vector<float> pdfs;           // of each cell, 1/sr
     vec3 mean{0};                      // radiance, over the sphere
 };
 
@@ -45,12 +45,12 @@ vec3 environment_radiance(const Environment& environment, vec3 direction);
 
 struct EnvironmentSample {
     vec3 direction{0, 1, 0}, radiance{0};
-    float density = 0; // 1/sr
+    float pdf = 0; // 1/sr
 };
 EnvironmentSample sample_environment(const Environment& environment, vec2 u);
 
-// Density, 1/sr, with which sample_environment() picks a direction.
-float environment_density(const Environment& environment, vec3 direction);
+// Pdf, 1/sr, with which sample_environment() picks a direction.
+float environment_pdf(const Environment& environment, vec3 direction);
 
 // Adds reflected environment light to the radiance of up to 16 Lambertian surfaces. Each takes n pairs of directions,
 // one by radiance and one by cosine, combined by the balance heuristic. `u`: points × n sample pairs.

@@ -11,11 +11,11 @@ struct SkyDirections {
     vec3 direction[16], light[16];
 };
 
-// Radiance reflected from a direction, over the sum of the densities (balance heuristic) of sampling it by radiance,
-// `density` in 1/sr, and by cosine.
-vec3 weighted(const SurfacePoint& point, vec3 direction, vec3 radiance, float density) {
+// Radiance reflected from a direction, over the sum of the pdfs (balance heuristic) of sampling it by radiance,
+// `pdf` in 1/sr, and by cosine.
+vec3 weighted(const SurfacePoint& point, vec3 direction, vec3 radiance, float pdf) {
     const float cosine = std::max(glm::dot(point.normal, direction), 0.0f);
-    return density + cosine > 0 ? point.base_color * radiance * (cosine / pi / (density + cosine / pi)) : vec3(0);
+    return pdf + cosine > 0 ? point.base_color * radiance * (cosine / pi / (pdf + cosine / pi)) : vec3(0);
 }
 
 void add_visible(const Snapshot& snapshot, std::span<const SurfacePoint> points, const SkyDirections& sky,
@@ -52,12 +52,11 @@ void add_environment(const Snapshot& snapshot, std::span<const SurfacePoint> poi
             const vec2 pair = u[i * count + k];
             const EnvironmentSample sample = sample_environment(environment, pair);
             by_light.direction[i] = sample.direction;
-            if (sample.density > 0)
-                by_light.light[i] = weighted(points[i], sample.direction, sample.radiance, sample.density);
+            if (sample.pdf > 0) by_light.light[i] = weighted(points[i], sample.direction, sample.radiance, sample.pdf);
             by_surface.direction[i] = cosine_direction(points[i].normal, glm::fract(pair + vec2(0.618034f, 0.754878f)));
             by_surface.light[i] =
                 weighted(points[i], by_surface.direction[i], environment_radiance(environment, by_surface.direction[i]),
-                         environment_density(environment, by_surface.direction[i]));
+                         environment_pdf(environment, by_surface.direction[i]));
         }
         add_visible(snapshot, points, by_light, radiance, scale);
         add_visible(snapshot, points, by_surface, radiance, scale);
