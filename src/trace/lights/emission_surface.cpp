@@ -3,7 +3,7 @@
 #include "base/random.h"
 #include "trace/lights/emissive_bricks.h"
 #include "trace/lights/emissive_triangles.h"
-#include "trace/occlusion/occluders.h"
+#include "trace/lights/surface_rays.h"
 #include "trace/snapshot.h"
 #include "trace/surface.h"
 
@@ -12,41 +12,13 @@
 
 namespace tyndall {
 namespace {
-// A ray from each point to an emitting point, and the unoccluded light reflected from there.
-struct EmittedRays {
-    Occluders::ShadowRays rays{};
-    vec3 light[16] = {};
-
-    void set(size_t i, const SurfacePoint& point, vec3 direction, float length, vec3 sent) {
-        if (!(max_component(sent) > 0)) return;
-        light[i] = sent;
-        rays.set(i, off_surface(point.face_normal, {point.position, direction, length}));
-    }
-};
-
 // `share`: pdf used in the balance heuristic over the actual one; 1 for places picked by power.
-void set_place(const SurfacePoint& point, const EmissionSample& place, float share, size_t i, EmittedRays& to) {
+void set_place(const SurfacePoint& point, const EmissionSample& place, float share, size_t i, SurfaceRays& to) {
     const vec3 offset = place.position - point.position;
     const float away = glm::length(offset), cosine = away > 0 ? glm::dot(point.normal, offset) / away : 0;
     const float pdf = place.pdf * away * away + cosine / pi * place.line_pdf;
     if (!(cosine > 0) || !(pdf > 0) || !(share > 0)) return;
     to.set(i, point, offset / away, away, point.base_color / pi * place.emission * (cosine * share / pdf));
-}
-
-void add_visible(const Snapshot& snapshot, std::span<const SurfacePoint> points, const EmittedRays& to, float scale,
-                 std::span<vec3> radiance) {
-    alignas(64) float visibility[16];
-    std::fill_n(visibility, 16, 1.0f);
-    if (snapshot.occluders && !snapshot.occluders->empty()) snapshot.occluders->transmission(to.rays, visibility);
-    for (size_t i = 0; i < points.size(); ++i) {
-        if (!to.rays.active[i] || !(visibility[i] > 0)) continue;
-        const vec3 direction(to.rays.dx[i], to.rays.dy[i], to.rays.dz[i]);
-        double depth = 0;
-        for (const Medium& medium : snapshot.media)
-            if (!only_emits(medium.optics))
-                depth += optical_depth(medium, {points[i].position, direction, to.rays.t_max[i]});
-        radiance[i] += to.light[i] * (scale * visibility[i] * static_cast<float>(std::exp(-depth)));
-    }
 }
 
 // Further random numbers for a point, seeded by its sample pair.
@@ -56,8 +28,8 @@ RandomStream numbers_after(vec2 pair) {
 
 void add_fire(const EmissiveBricks& fire, const Snapshot& snapshot, std::span<const SurfacePoint> points,
               std::span<const vec2> pairs, float scale, std::span<vec3> radiance) {
-    EmittedRays picked;
-    std::vector<EmittedRays> on_lines(fire.fields.size());
+    SurfaceRays picked;
+    std::vector<SurfaceRays> on_lines(fire.fields.size());
     for (size_t i = 0; i < points.size(); ++i) {
         const vec2 pair = pairs[i];
         RandomStream random = numbers_after(pair);
@@ -70,13 +42,14 @@ void add_fire(const EmissiveBricks& fire, const Snapshot& snapshot, std::span<co
                 set_place(points[i], hit.sample, hit.inverse_pdf * hit.sample.line_pdf, i, on_lines[field]);
         }
     }
-    add_visible(snapshot, points, picked, scale, radiance);
-    for (const EmittedRays& to : on_lines) add_visible(snapshot, points, to, scale, radiance);
+    add_unblocked(picked, snapshot.occluders.get(), snapshot.media, points, scale, radiance);
+    for (const SurfaceRays& to : on_lines)
+        add_unblocked(to, snapshot.occluders.get(), snapshot.media, points, scale, radiance);
 }
 
 void add_surfaces(const EmissiveTriangles& emissive, const Snapshot& snapshot, std::span<const SurfacePoint> points,
                   std::span<const vec2> pairs, float scale, std::span<vec3> radiance) {
-    EmittedRays picked;
+    SurfaceRays picked;
     for (size_t i = 0; i < points.size(); ++i) {
         const SurfacePoint& point = points[i];
         const EmissivePoint target =
@@ -88,7 +61,7 @@ void add_surfaces(const EmissiveTriangles& emissive, const Snapshot& snapshot, s
         const float seen = cosine * std::abs(glm::dot(target.normal, direction)) / (target.pdf * away * away);
         picked.set(i, point, direction, away * 0.9999f, point.base_color / pi * target.emission * seen);
     }
-    add_visible(snapshot, points, picked, scale, radiance);
+    add_unblocked(picked, snapshot.occluders.get(), snapshot.media, points, scale, radiance);
 }
 }
 

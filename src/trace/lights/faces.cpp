@@ -1,7 +1,7 @@
 #include "trace/lights/faces.h"
 
 #include "scene/area_shape.h"
-#include "trace/occlusion/occluders.h"
+#include "trace/lights/surface_rays.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 
@@ -24,27 +24,23 @@ FaceHit visible_face(const Snapshot& snapshot, const Ray& ray) {
 }
 
 namespace {
-// A ray from each surface point to a point of the face, and the unoccluded irradiance along it.
-struct FaceRays {
-    Occluders::ShadowRays rays{};
-    vec3 light[16];
-};
-
-void aim(const Snapshot& snapshot, const Light& light, std::span<const SurfacePoint> points, std::span<const vec2> u,
-         size_t k, FaceRays& to) {
+// A ray from each surface point to a point of the face, with the irradiance along it.
+SurfaceRays aim(const Snapshot& snapshot, const Light& light, std::span<const SurfacePoint> points,
+                std::span<const vec2> u, size_t k) {
+    SurfaceRays to;
     const size_t count = u.size() / points.size();
     const vec3 radiance = radiance_of(light) * (light.surface_scale / static_cast<float>(count));
     for (size_t i = 0; i < points.size(); ++i) {
-        to.rays.active[i] = 0;
         const SurfacePoint& point = points[i];
         if (!is_lit(light, snapshot, point.instance)) continue;
         const AreaSample sample = sample_area(*light.area, point.position, u[i * count + k]);
         const float cosine = glm::dot(point.normal, sample.direction);
         if (!(cosine > 0) || !(sample.steradians > 0)) continue;
-        to.rays.set(i, off_surface(point.face_normal, {point.position, sample.direction, sample.distance * 0.9999f}));
         const vec3 picture = face_texture(*light.area, point.position + sample.distance * sample.direction);
-        to.light[i] = radiance * (sample.steradians * cosine) * picture;
+        to.set(i, point, sample.direction, sample.distance * 0.9999f,
+               radiance * (sample.steradians * cosine) * picture);
     }
+    return to;
 }
 }
 
@@ -52,20 +48,8 @@ void add_face_light(const Snapshot& snapshot, const Light& light, bool dimmed, s
                     std::span<const vec2> u, std::span<vec3> irradiance) {
     const auto& occluders = shadow_casters(light, snapshot);
     if (!(light.surface_scale > 0)) return;
-    FaceRays to;
-    for (size_t k = 0; k < u.size() / points.size(); ++k) {
-        aim(snapshot, light, points, u, k, to);
-        alignas(64) float visibility[16];
-        std::fill_n(visibility, 16, 1.0f);
-        if (occluders) occluders->transmission(to.rays, visibility);
-        for (size_t i = 0; i < points.size(); ++i) {
-            if (!to.rays.active[i] || !(visibility[i] > 0)) continue;
-            const Ray way{points[i].position, {to.rays.dx[i], to.rays.dy[i], to.rays.dz[i]}, to.rays.t_max[i]};
-            double depth = 0;
-            for (const Medium& medium : snapshot.media)
-                if (dimmed && !only_emits(medium.optics)) depth += optical_depth(medium, way);
-            irradiance[i] += to.light[i] * (visibility[i] * static_cast<float>(std::exp(-depth)));
-        }
-    }
+    const std::span<const Medium> media = dimmed ? snapshot.media : std::span<const Medium>();
+    for (size_t k = 0; k < u.size() / points.size(); ++k)
+        add_unblocked(aim(snapshot, light, points, u, k), occluders.get(), media, points, 1, irradiance);
 }
 }
