@@ -4,6 +4,7 @@
 #include "trace/fluence/light_emission.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
+#include "trace/surface.h"
 #include "volume/medium.h"
 #include "volume/tracking.h"
 
@@ -129,14 +130,8 @@ void hit_surface(const LightTracing& tracing, LightPath& path, const SurfacePoin
     vec3 share = facing > 0 ? surface.base_color * (shaded / facing) : vec3(0);
     if (through) share *= 2 * surface.alpha;
     if (path.order == 0) share *= light.surface_scale * range_attenuation(tracing, path, surface.position);
-    vec3 x, y;
-    make_frame(surface.face_normal, x, y);
-    const vec2 u = path.pair();
-    const float across = std::sqrt(u.x), angle = 2 * pi * u.y;
-    const vec3 direction = glm::normalize(across * std::cos(angle) * x + across * std::sin(angle) * y +
-                                          std::sqrt(std::max(0.0f, 1 - u.x)) * surface.face_normal);
-    continue_path(tracing, path, {surface.position + surface.face_normal * shadow_offset(surface.position), direction},
-                  share);
+    const vec3 origin = surface.position + surface.face_normal * shadow_offset(surface.position);
+    continue_path(tracing, path, {origin, cosine_direction(surface.face_normal, path.pair())}, share);
 }
 
 // One segment of a path, up to a collision or the surface at distance `surface_distance`.
