@@ -77,7 +77,7 @@ int blocking_instance(const Occluders& occluders, Ray ray) {
         if (hits.instance[0] < 0) return first;
         if (first < 0) first = hits.instance[0];
         if (occluders.surface(ray, hits, 0).alpha >= 1) return hits.instance[0];
-        const float gone = hits.t[0] + std::max(shadow_offset(ray.at(hits.t[0])), 4e-6f * hits.t[0]);
+        const float gone = hits.t[0] + surface_skip(ray.at(hits.t[0]), hits.t[0]);
         ray = {ray.at(gone), ray.direction, ray.t_max - gone};
         if (!(ray.t_max > 0)) return first;
     }

@@ -251,7 +251,7 @@ void hit_surface(const PathState& state, Segment& line, const SurfacePoint& surf
     line.rest.origin = line.rest.at(t);
     line.rest.t_max -= t;
     line.traveled += t;
-    line.skip = std::max(shadow_offset(line.rest.origin), 4e-6f * t);
+    line.skip = surface_skip(line.rest.origin, t);
     line.instance = instance, line.triangle = triangle;
 }
 

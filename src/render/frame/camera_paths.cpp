@@ -11,9 +11,6 @@
 
 namespace tyndall {
 namespace {
-// Offset to step off a surface: larger than the rounding error of the point, too small to be visible.
-float surface_skip(vec3 point, float traveled) { return std::max(shadow_offset(point), 4e-6f * traveled); }
-
 // Sample `sample` of a van der Corput sequence shifted by `shift`: the samples of a batch are stratified over [0,1).
 // The shift includes a random offset within half a stratum, so that regular steps do not alias with regular shadows.
 float stratified(uint32_t sample, uint32_t shift) { return to_unit(reverse_bits(sample) + shift); }

@@ -121,7 +121,7 @@ void hit_surface(const LightTracing& tracing, LightPath& path, const SurfacePoin
     if (path.random.next() >= reflecting) {
         if (through && lit) path.throughput *= 2.0f;
         const vec3 point = path.ray.at(distance);
-        path.ray.origin = point + path.ray.direction * std::max(shadow_offset(point), 4e-6f * distance);
+        path.ray.origin = point + path.ray.direction * surface_skip(point, distance);
         return;
     }
     if (!lit) return void(path.alive = false);

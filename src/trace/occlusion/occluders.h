@@ -45,6 +45,10 @@ void set_embree_isa(std::string_view isa);
 // How far a ray must start from a surface at `position` to miss it: 32 ulps of the largest coordinate.
 inline float shadow_offset(vec3 position) { return 4e-6f * std::max(max_component(glm::abs(position)), 1e-5f); }
 
+// How far a ray that has traveled a distance to `position` must go on to miss the surface there: larger than the
+// rounding error of the point, too small to be visible.
+inline float surface_skip(vec3 position, float traveled) { return std::max(shadow_offset(position), 4e-6f * traveled); }
+
 // A ray that leaves a surface: it starts off the face, on the side it goes to, and ends where the given one does, short
 // of any surface there.
 Ray off_surface(vec3 face_normal, const Ray& ray);
