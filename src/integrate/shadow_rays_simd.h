@@ -20,7 +20,7 @@ HWY_INLINE void aim_at_center(const Vec3s& position, const LightSamples& light_a
                               Occluders::ShadowRays& rays) {
     store(position.x, rays.ox), store(position.y, rays.oy), store(position.z, rays.oz);
     store(light_at.to_light.x, rays.dx), store(light_at.to_light.y, rays.dy), store(light_at.to_light.z, rays.dz);
-    store(light_at.distance * 0.9999f, rays.t_max);
+    store(light_at.distance * shadow_reach<float>, rays.t_max);
     alignas(64) float is_wanted[16];
     store(select(wanted, 1.0f, 0.0f), is_wanted);
     for (size_t lane = 0; lane < 16; ++lane) rays.active[lane] = is_wanted[lane] > 0 ? -1 : 0, rays.t_min[lane] = 0;

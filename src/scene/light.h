@@ -45,8 +45,11 @@ struct LightSample {
 };
 LightSample arrival(const Light& light, const vec3& point);
 
+// Shadow rays end at this share of the distance to the light, just before it.
+template<class T> inline constexpr T shadow_reach = static_cast<T>(0.9999);
+
 // The shadow ray to a point on the light, sampled from u in [0,1)²: uniform over the solid angle of the light's sphere
-// or disc, or its center for a point light. Ends just before the light.
+// or disc, or its center for a point light.
 Ray ray_to_light(const Light& light, vec3 point, vec2 u);
 
 // The radius inside which 1/r² is capped.

@@ -56,7 +56,7 @@ void append_paths(const ScatteringFog& fog, const Light& light, const Ray& ray, 
             share * radiance_of(light) * picture *
             static_cast<float>(weight * steradians / (1 + (wide ? double{steradians} * by_phase : 0)));
         if (max_component(arriving) > 0)
-            paths.push_back({number, {there.point, direction, distance * 0.9999f}, arriving});
+            paths.push_back({number, {there.point, direction, distance * shadow_reach<float>}, arriving});
     };
     const AreaSample sample = sample_area(*light.area, there.point, u.face);
     if (sample.steradians > 0) append(sample.direction, sample.distance, sample.steradians);

@@ -3,6 +3,7 @@
 // sampling (balance heuristic).
 #include "integrate/lights/path_lights.h"
 
+#include "scene/light.h"
 #include "trace/lights/emissive_triangles.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
@@ -40,7 +41,7 @@ void append_path(const ScatteringFog& fog, const Ray& ray, const FogSampler& see
     const double weight =
         extinction * transmittance * std::abs(glm::dot(target.normal, direction)) * fade_at(fog, there.point) / pdf;
     const ScatterPath path{number,
-                           {there.point, direction, away * 0.9999f},
+                           {there.point, direction, away * shadow_reach<float>},
                            scattered(fog.media, there, direction).first * target.emission * static_cast<float>(weight)};
     if (max_component(path.light) > 0) paths.push_back(path);
 }

@@ -65,7 +65,7 @@ Ray ray_to(const LightPoint& to, dvec3 from) {
         const double along = glm::dot(center, direction), off = glm::dot(center, center) - along * along;
         end = along - std::sqrt(std::max(to.radius * to.radius - off, 0.0));
     }
-    return {vec3(from), vec3(direction), static_cast<float>(std::max(end, 0.0) * 0.9999)};
+    return {vec3(from), vec3(direction), static_cast<float>(std::max(end, 0.0) * shadow_reach<double>)};
 }
 
 // The instance of the first opaque surface, or else of the first surface; -1 = none.

@@ -16,7 +16,7 @@ void find_alpha_shadows(const Occluders& occluders, const LightPoint& to, std::s
             const double along = glm::dot(center, direction), off = glm::dot(center, center) - along * along;
             end = along - std::sqrt(std::max(to.radius * to.radius - off, 0.0));
         }
-        rays.set(i, {vec3(position), vec3(direction), static_cast<float>(end * 0.9999)});
+        rays.set(i, {vec3(position), vec3(direction), static_cast<float>(end * shadow_reach<double>)});
     }
     occluders.transmission(rays, share);
 }

@@ -33,7 +33,7 @@ Connection connection_to_face(const Light& light, vec3 point, int index, vec2 u)
     const AreaSample sample = sample_area(*light.area, point, u);
     Connection c;
     c.point = point, c.to_light = c.shadow = sample.direction;
-    c.fog_length = sample.distance, c.shadow_length = sample.distance * 0.9999f;
+    c.fog_length = sample.distance, c.shadow_length = sample.distance * shadow_reach<float>;
     c.steradians = sample.steradians;
     c.irradiance =
         radiance_of(light) * sample.steradians * face_texture(*light.area, point + sample.distance * sample.direction);
@@ -95,7 +95,7 @@ Connection connection_to_emitter(vec3 point, const EmissivePoint& target) {
     Connection c;
     c.point = point;
     c.to_light = c.shadow = offset / distance;
-    c.fog_length = distance, c.shadow_length = distance * 0.9999f;
+    c.fog_length = distance, c.shadow_length = distance * shadow_reach<float>;
     return c;
 }
 

@@ -24,7 +24,7 @@ Ray punctual_sample(const Light& light, vec3 point, vec2 u) {
     const float distance = glm::length(towards);
     if (!(distance > light.radius)) return {point, -light.direction, 0};
     const vec3 axis = towards / distance;
-    if (!(light.radius > 0)) return {point, axis, distance * 0.9999f};
+    if (!(light.radius > 0)) return {point, axis, distance * shadow_reach<float>};
 
     // The intersection with the sphere: the nearer of the two roots of |t·d - towards|² = r².
     const float sine = light.radius / distance;
@@ -32,7 +32,7 @@ Ray punctual_sample(const Light& light, vec3 point, vec2 u) {
     const float along = glm::dot(direction, towards);
     const vec3 off = towards - along * direction;
     const float half_chord = std::sqrt(std::max(0.0f, light.radius * light.radius - glm::dot(off, off)));
-    return {point, direction, (along - half_chord) * 0.9999f};
+    return {point, direction, (along - half_chord) * shadow_reach<float>};
 }
 
 bool punctual_is_soft(const Light& light) { return light.radius > 0; }

@@ -1,6 +1,7 @@
 #include "trace/lights/emission_surface.h"
 
 #include "base/random.h"
+#include "scene/light.h"
 #include "trace/lights/emissive_bricks.h"
 #include "trace/lights/emissive_triangles.h"
 #include "trace/lights/surface_rays.h"
@@ -59,7 +60,7 @@ void add_surfaces(const EmissiveTriangles& emissive, const Snapshot& snapshot, s
         if (!(cosine > 0)) continue;
         const vec3 direction = offset / away;
         const float seen = cosine * std::abs(glm::dot(target.normal, direction)) / (target.pdf * away * away);
-        picked.set(i, point, direction, away * 0.9999f, point.base_color / pi * target.emission * seen);
+        picked.set(i, point, direction, away * shadow_reach<float>, point.base_color / pi * target.emission * seen);
     }
     add_unblocked(picked, snapshot.occluders.get(), snapshot.media, points, scale, radiance);
 }

@@ -37,7 +37,7 @@ SurfaceRays aim(const Snapshot& snapshot, const Light& light, std::span<const Su
         const float cosine = glm::dot(point.normal, sample.direction);
         if (!(cosine > 0) || !(sample.steradians > 0)) continue;
         const vec3 picture = face_texture(*light.area, point.position + sample.distance * sample.direction);
-        to.set(i, point, sample.direction, sample.distance * 0.9999f,
+        to.set(i, point, sample.direction, sample.distance * shadow_reach<float>,
                radiance * (sample.steradians * cosine) * picture);
     }
     return to;

@@ -3,8 +3,6 @@
 
 namespace tyndall {
 namespace {
-constexpr double reach = 0.9999; // of the distance to a local light: where shadow rays end
-
 using Point = ShadowSlice::Point;
 using Slice = ShadowSlice;
 
@@ -12,7 +10,7 @@ using Slice = ShadowSlice;
 // t = (x·ly - y·lx) / (ly - w·y), with w = 0 for a sun and 1 otherwise, and 0 < y < ly.
 void append_shadow(const Slice& slice, Point a, Point b, std::vector<Interval<double>>& shadows) {
     if (a.y > b.y) std::swap(a, b);
-    const double top = slice.far ? std::numeric_limits<double>::infinity() : reach * slice.light_y;
+    const double top = slice.far ? std::numeric_limits<double>::infinity() : shadow_reach<double> * slice.light_y;
     if (!(b.y > 0) || !(a.y < top)) return;
     const Point low = a, high = b;
     if (a.y < 0) a = {between(low, high, -low.y / (high.y - low.y)).x, 0};
@@ -112,7 +110,7 @@ void set_lane(ShadowPacket& packet, size_t i, const Slice& slice) {
         packet.x[axis][i] = slice.x[axis], packet.y[axis][i] = slice.y[axis];
     }
     packet.light_x[i] = slice.light_x, packet.light_y[i] = slice.light_y, packet.near[i] = slice.far ? 0 : 1;
-    packet.top[i] = slice.far ? std::numeric_limits<double>::infinity() : reach * slice.light_y;
+    packet.top[i] = slice.far ? std::numeric_limits<double>::infinity() : shadow_reach<double> * slice.light_y;
     packet.end[i] = slice.x_max, packet.meters[i] = 1 / slice.per_meter;
     packet.active |= 1u << i;
 }

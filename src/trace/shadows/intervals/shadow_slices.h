@@ -37,7 +37,7 @@ ShadowSlices make_shadow_slices(const std::vector<ShadowTriangle>& triangles); /
 ShadowSlices coherent_slices(const ShadowSlices& slices, std::span<const Ray> rays, std::span<const LightPoint> points);
 
 // Replaces `lit` by the intervals of the ray 0..t_max, ascending, from which the light's point is visible. Like shadow
-// rays, slices end at 0.9999 of the distance to the point, and nothing inside the light's sphere casts shadows.
+// rays, slices end at shadow_reach of the distance to the point, and nothing inside the light's sphere casts shadows.
 void find_lit(const ShadowSlices& slices, const Ray& ray, const LightPoint& light, std::vector<Interval<double>>& lit);
 
 // The same for up to 16 rays, each with its own point of one light; fast for coherent rays after coherent_slices().
