@@ -54,20 +54,6 @@ std::vector<LightStretch> joined(const std::vector<LightStretch>& shares, double
     return result;
 }
 
-// From a point of the ray to a point of the light; ends at the surface of a spherical light.
-Ray ray_to(const LightPoint& to, dvec3 from) {
-    const dvec3 towards = to.far ? to.at : to.at - from;
-    const double distance = glm::length(towards);
-    const dvec3 direction = towards / distance;
-    double end = to.far ? double(infinity) : distance;
-    if (to.radius > 0) {
-        const dvec3 center = to.center - from;
-        const double along = glm::dot(center, direction), off = glm::dot(center, center) - along * along;
-        end = along - std::sqrt(std::max(to.radius * to.radius - off, 0.0));
-    }
-    return {vec3(from), vec3(direction), static_cast<float>(std::max(end, 0.0) * shadow_reach<double>)};
-}
-
 // The instance of the first opaque surface, or else of the first surface; -1 = none.
 int blocking_instance(const Occluders& occluders, Ray ray) {
     int first = -1;
@@ -132,7 +118,7 @@ void add_alpha_shadows(const RayScene& scene, const RaySegment& segment, size_t 
         float through = 0;
         for (size_t p = 0; p < points; ++p)
             through += scene.casters(on.light)->transmission(
-                ray_to(on.points[p], point_at(segment.ray, step.middle() - segment.start)), 0);
+                ray_to_point(on.points[p], point_at(segment.ray, step.middle() - segment.start)), 0);
         through /= static_cast<float>(points);
         if (!(through < 1)) continue;
         at[i].share *= through;
@@ -157,7 +143,7 @@ void name_blockers(const RayScene& scene, const RaySegment& segment, LightOnSegm
             const double t = stretch.low + (stretch.high - stretch.low) * (i + 0.5) / blocker_places;
             for (size_t p = 0; p < std::min(on.points.size(), blocker_points); ++p) {
                 const int instance =
-                    blocking_instance(*scene.casters(on.light), ray_to(on.points[p], point_at(segment.ray, t)));
+                    blocking_instance(*scene.casters(on.light), ray_to_point(on.points[p], point_at(segment.ray, t)));
                 if (instance < 0) continue;
                 const std::string name = name_of_instance(scene.snapshot, instance);
                 const auto known = std::ranges::find(counts, name, &std::pair<int, std::string>::second);

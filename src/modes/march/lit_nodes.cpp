@@ -6,18 +6,7 @@ namespace {
 void find_alpha_shadows(const Occluders& occluders, const LightPoint& to, std::span<const LitNode> nodes,
                         float* share) {
     Occluders::ShadowRays rays{};
-    for (size_t i = 0; i < nodes.size(); ++i) {
-        const dvec3 position = nodes[i].position, towards = to.far ? to.at : to.at - position;
-        const double distance = glm::length(towards);
-        const dvec3 direction = towards / distance;
-        double end = to.far ? double(infinity) : distance;
-        if (to.radius > 0) { // ends at the surface of the light's sphere
-            const dvec3 center = to.center - position;
-            const double along = glm::dot(center, direction), off = glm::dot(center, center) - along * along;
-            end = along - std::sqrt(std::max(to.radius * to.radius - off, 0.0));
-        }
-        rays.set(i, {vec3(position), vec3(direction), static_cast<float>(end * shadow_reach<double>)});
-    }
+    for (size_t i = 0; i < nodes.size(); ++i) rays.set(i, ray_to_point(to, nodes[i].position));
     occluders.transmission(rays, share);
 }
 }

@@ -7,6 +7,19 @@ LightPoint center_of(const Light& light) {
     return {dvec3(light.position), false, dvec3(light.position), light.radius};
 }
 
+Ray ray_to_point(const LightPoint& to, dvec3 from) {
+    const dvec3 towards = to.far ? to.at : to.at - from;
+    const double distance = glm::length(towards);
+    const dvec3 direction = towards / distance;
+    double end = to.far ? double(infinity) : distance;
+    if (to.radius > 0) { // ends at the surface of the sphere
+        const dvec3 center = to.center - from;
+        const double along = glm::dot(center, direction), off = glm::dot(center, center) - along * along;
+        end = along - std::sqrt(std::max(to.radius * to.radius - off, 0.0));
+    }
+    return {vec3(from), vec3(direction), static_cast<float>(std::max(end, 0.0) * shadow_reach<double>)};
+}
+
 LightPoint point_on(const Light& light, const Ray& ray, vec3 u) {
     LightPoint result = center_of(light);
     if (is_distant(light)) {

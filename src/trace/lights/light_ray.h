@@ -14,6 +14,9 @@ struct LightPoint {
 // The center of the light.
 LightPoint center_of(const Light& light);
 
+// The shadow ray to the light's point; ends just before it, or before the surface of the light's sphere.
+Ray ray_to_point(const LightPoint& to, dvec3 from);
+
 // A random point of a soft light. For a sun, the direction that ray_to_light() picks. For a sphere, a point with
 // density 1/√(radius² - r²), whose projection from every side is a uniform disc: uniform over solid angle up to
 // O(radius²/distance²). u.xy stay well distributed as seen from the point where the ray passes the light.
