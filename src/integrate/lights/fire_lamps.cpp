@@ -1,6 +1,7 @@
 #include "integrate/lights/fire_lamps.h"
 
 #include "base/random.h"
+#include "integrate/lights/lamps.h"
 #include "trace/lights/emissive_bricks.h"
 
 #include <algorithm>
@@ -8,9 +9,7 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t max_lamps = 4;
 constexpr uint32_t places_asked = 1 << 14;
-constexpr float ball_by_spread = 5.0f / 3; // for a ball: radius² / mean squared distance to its center
 
 struct FireSample {
     dvec3 position{0}, candela{0};
@@ -83,7 +82,7 @@ std::vector<Light> fire_lamps(const Snapshot& snapshot) {
         Light lamp;
         lamp.name = "fire " + std::to_string(lamps.size() + 1);
         lamp.position = vec3(part.middle), lamp.intensity = vec3(part.candela);
-        lamp.radius = std::sqrt(ball_by_spread * float(part.spread.x + part.spread.y + part.spread.z));
+        lamp.radius = ball_radius(part.spread);
         lamp.core = 1e-5f * snapshot.extent;
         lamp.surface_scale = 0;
         lamps.push_back(lamp);
@@ -99,23 +98,5 @@ Snapshot with_fire_lamps(Snapshot snapshot) {
     const std::vector<Light> lamps = fire_lamps(snapshot);
     snapshot.lights.insert(snapshot.lights.end(), lamps.begin(), lamps.end());
     return snapshot;
-}
-
-ScatterFunction with_lamps_as_emission(size_t lights, size_t lamps, ScatterFunction scatter) {
-    if (lamps == 0) return scatter;
-    return [lights, lamps, scatter = std::move(scatter)](const RayBatch& batch, std::span<Scatter> results) {
-        if (batch.parts.empty()) return scatter(batch, results);
-        RayBatch own = batch;
-        std::vector<vec3> parts(batch.rays.size() * part_count(lights + lamps), vec3(0));
-        own.parts = parts;
-        scatter(own, results);
-        for (size_t ray = 0; ray < batch.rays.size(); ++ray) {
-            for (size_t i = 0; i < lights; ++i) batch.part(ray, i) += own.part(ray, i);
-            for (size_t i = lights; i < lights + lamps; ++i)
-                batch.part(ray, batch.index_of(OtherLight::emission)) += own.part(ray, i);
-            for (const OtherLight other : {OtherLight::ambient, OtherLight::emission, OtherLight::multiple})
-                batch.part(ray, batch.index_of(other)) += own.part(ray, own.index_of(other));
-        }
-    };
 }
 }

@@ -1,6 +1,5 @@
 // Lamps that approximate emissive fog for techniques that support only lamps.
 #pragma once
-#include "integrate/ray_batch.h"
 #include "scene/light.h"
 #include "trace/snapshot.h"
 
@@ -17,8 +16,4 @@ double far_distance(const Light& lamp, double share);
 
 // The snapshot with lamps for its fire appended to its lights.
 Snapshot with_fire_lamps(Snapshot snapshot);
-
-// Wraps `scatter` for such a snapshot so that the lamps' parts count as emission. `lights`: number of lights in the
-// scene.
-ScatterFunction with_lamps_as_emission(size_t lights, size_t lamps, ScatterFunction scatter);
 }

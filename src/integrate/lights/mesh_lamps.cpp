@@ -1,6 +1,7 @@
 #include "integrate/lights/mesh_lamps.h"
 
 #include "base/random.h"
+#include "integrate/lights/lamps.h"
 #include "scene/light_filter.h"
 #include "scene/photometry/ies_file.h"
 #include "scene/photometry/ies_profile.h"
@@ -14,11 +15,9 @@
 
 namespace tyndall {
 namespace {
-constexpr size_t max_lamps = 4;
 constexpr uint32_t points_asked = 1 << 12, points_of_lamp = 512;
 constexpr int row_step = 10, column_step = 15; // angular resolution of a lamp's profile, degrees
 constexpr double nearly_even = 0.04;           // relative variation below which a lamp needs no profile
-constexpr float ball_by_spread = 5.0f / 3;     // for a ball: radius² / mean squared distance to its center
 
 // A point on a surface; candela: intensity along its normal.
 struct SurfaceEmission {
@@ -56,12 +55,9 @@ std::vector<SurfaceEmission> points_of(const EmissiveTriangles& glow, const Occl
         const float u = (float(i) + 0.5f) / points_asked;
         const Sample2 pair = sample2(i, hash(0x3e5fu));
         const EmissivePoint point = sample_triangles(glow, surfaces, u, {pair.x, pair.y});
-        const auto found = std::ranges::upper_bound(glow.cumulative, double{u});
-        const size_t triangle = std::min<size_t>(found - glow.cumulative.begin(), glow.triangles.size() - 1);
         const dvec3 candela = dvec3(point.emission) / (double{point.pdf} * points_asked);
         if (const double weight = luminance(vec3(candela)); weight > 0 && std::isfinite(weight))
-            points.push_back(
-                {dvec3(point.position), dvec3(point.normal), candela, weight, glow.triangles[triangle].instance});
+            points.push_back({dvec3(point.position), dvec3(point.normal), candela, weight, point.instance});
     }
     return points;
 }
@@ -224,7 +220,7 @@ MeshLamps make_lamps(const Snapshot& snapshot, const EmissiveTriangles& glow) {
         Light lamp;
         lamp.name = "glowing surface " + std::to_string(result.lamps.size() + 1);
         lamp.position = vec3(part.middle);
-        lamp.radius = std::sqrt(ball_by_spread * float(part.spread.x + part.spread.y + part.spread.z));
+        lamp.radius = ball_radius(part.spread);
         lamp.core = 1e-5f * snapshot.extent, lamp.surface_scale = 0;
         aim(part, *glowing, lamp);
         if (!(max_component(lamp.intensity) > 0)) continue;

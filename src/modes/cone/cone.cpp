@@ -4,8 +4,7 @@
 #include "modes/cone/settings.h"
 #include "modes/resolution.h"
 
-#include "integrate/lights/fire_lamps.h"
-#include "integrate/lights/mesh_lamps.h"
+#include "integrate/lights/lamps.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
@@ -121,9 +120,7 @@ float AnchoredFog::extinction() const {
 float filter_node_angle(const Light& light) { return cone_angle(light) / (8 * filter_pieces_of_ray); }
 
 Cone make_cone(const View& view, const Snapshot& snapshot, const Settings& settings) {
-    Snapshot seen =
-        with_fire_lamps(with_mean_environment(with_terms(stylized(snapshot, settings.style), settings.terms)));
-    seen = with_mesh_lamps(std::move(seen), settings.terms.emission);
+    Snapshot seen = with_lamps(snapshot, settings.style, settings.terms);
     Cone cone;
     cone.settings = settings.of<ConeSettings>(), cone.style = settings.style, cone.eye = view.camera.position;
     cone.noise_rise = static_cast<float>(settings.of<ConeSettings>().noise_speed * snapshot.seconds);
@@ -146,8 +143,7 @@ ScatterFunction prepare_cone(const View& view, const Snapshot& snapshot, const S
     ScatterFunction scatter = [cone](const RayBatch& batch, std::span<Scatter> results) {
         cone_packet(*cone, batch, results);
     };
-    const size_t lights = snapshot.lights.size();
-    scatter = with_lamps_as_emission(lights, cone->lights.size() - lights, std::move(scatter));
+    scatter = with_lamps_as_emission(snapshot.lights.size(), cone->lights.size(), std::move(scatter));
     if (history) update_history(*history, view, snapshot, settings);
     if (settings.of<ConeSettings>().resolution == Resolution::full && !history) return scatter;
     return from_fog_buffer(view, snapshot, {settings.of<ConeSettings>().resolution}, std::move(scatter), history);

@@ -3,8 +3,7 @@
 #include "base/parallel.h"
 #include "base/simd/simd.h"
 #include "integrate/lights/field_light.h"
-#include "integrate/lights/fire_lamps.h"
-#include "integrate/lights/mesh_lamps.h"
+#include "integrate/lights/lamps.h"
 #include "integrate/style.h"
 #include "modes/froxel/glow.h"
 #include "modes/froxel/grid.h"
@@ -44,8 +43,7 @@ struct FroxelFrame {
 // Fills `scene` with the settings applied. Returns the fields that rays integrate by themselves.
 FieldLight set_scene(const View& view, const Snapshot& snapshot, const Settings& settings, FroxelScene& scene) {
     const TermSettings& terms = settings.terms;
-    scene.snapshot = with_fire_lamps(with_mean_environment(with_terms(stylized(snapshot, settings.style), terms)));
-    scene.snapshot = with_mesh_lamps(std::move(scene.snapshot), terms.emission);
+    scene.snapshot = with_lamps(snapshot, settings.style, terms);
     FieldLight fields = take_fields(scene.snapshot, settings.style, view.camera);
     scene.settings = with_tile(settings.of<FroxelSettings>(), view.size), scene.style = settings.style;
     scene.sun_media = media_in_sunlight(view, scene.snapshot, scene.settings.tile);
@@ -235,8 +233,7 @@ ScatterFunction prepare_froxel(const View& view, const Snapshot& snapshot, const
         if (batch.parts.empty()) return look_up_froxels(frame->buffer, batch, results);
         look_up_with_parts(*frame, batch, results);
     };
-    const size_t lights = snapshot.lights.size();
-    scatter = with_lamps_as_emission(lights, frame->scene.snapshot.lights.size() - lights, std::move(scatter));
+    scatter = with_lamps_as_emission(snapshot.lights.size(), frame->scene.snapshot.lights.size(), std::move(scatter));
     return with_field_light(std::move(fields), through_middle(view, std::move(scatter)));
 }
 

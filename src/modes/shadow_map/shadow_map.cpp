@@ -1,7 +1,6 @@
 // Ray marching in a fixed number of steps with shadow maps, as in games, between exact entry and exit points.
 #include "integrate/lights/field_light.h"
-#include "integrate/lights/fire_lamps.h"
-#include "integrate/lights/mesh_lamps.h"
+#include "integrate/lights/lamps.h"
 #include "integrate/lobe_cuts.h"
 #include "integrate/style.h"
 #include "modes/fog_buffer.h"
@@ -20,9 +19,7 @@ namespace tyndall {
 ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, const Settings& settings,
                                    History* history) {
     auto march = std::make_shared<ShadowMapMarch>();
-    march->snapshot =
-        with_fire_lamps(with_mean_environment(with_terms(stylized(snapshot, settings.style), settings.terms)));
-    march->snapshot = with_mesh_lamps(std::move(march->snapshot), settings.terms.emission);
+    march->snapshot = with_lamps(snapshot, settings.style, settings.terms);
     FieldLight fields = take_fields(march->snapshot, settings.style, view.camera);
     march->settings = settings.of<ShadowMapSettings>(), march->style = settings.style, march->camera = view.camera;
     march->detail = fog_detail(march->snapshot.media);
@@ -38,8 +35,7 @@ ScatterFunction prepare_shadow_map(const View& view, const Snapshot& snapshot, c
     ScatterFunction scatter = [march](const RayBatch& batch, std::span<Scatter> results) {
         march_shadow_maps(*march, batch, results);
     };
-    const size_t lights = snapshot.lights.size();
-    scatter = with_lamps_as_emission(lights, march->snapshot.lights.size() - lights, std::move(scatter));
+    scatter = with_lamps_as_emission(snapshot.lights.size(), march->snapshot.lights.size(), std::move(scatter));
     scatter = with_field_light(std::move(fields), std::move(scatter));
     const FogBufferOptions options{settings.of<ShadowMapSettings>().fog_resolution,
                                    settings.of<ShadowMapSettings>().blur};

@@ -1,7 +1,6 @@
 // Shadow volumes: exact shafts without noise.
 #include "integrate/lights/field_light.h"
-#include "integrate/lights/fire_lamps.h"
-#include "integrate/lights/mesh_lamps.h"
+#include "integrate/lights/lamps.h"
 #include "integrate/single_scattering/single_scattering.h"
 #include "integrate/style.h"
 #include "modes/lens_fog.h"
@@ -27,9 +26,7 @@ float half_diagonal(const Box& scene) {
 ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto frame = std::make_shared<SingleScattering>();
     const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
-    frame->snapshot =
-        with_fire_lamps(with_mean_environment(with_terms(stylized(snapshot, settings.style), settings.terms)));
-    frame->snapshot = with_mesh_lamps(std::move(frame->snapshot), settings.terms.emission);
+    frame->snapshot = with_lamps(snapshot, settings.style, settings.terms);
     frame->style = settings.style;
     FieldLight fields = take_fields(frame->snapshot, settings.style, view.camera);
     frame->nodes = own.nodes, frame->steps = own.steps;
@@ -49,8 +46,7 @@ ScatterFunction prepare_shadow_volume(const View& view, const Snapshot& snapshot
     ScatterFunction scatter = [frame](const RayBatch& batch, std::span<Scatter> results) {
         single_scattering_packet(*frame, batch, results);
     };
-    const size_t lights = snapshot.lights.size();
-    scatter = with_lamps_as_emission(lights, frame->snapshot.lights.size() - lights, std::move(scatter));
+    scatter = with_lamps_as_emission(snapshot.lights.size(), frame->snapshot.lights.size(), std::move(scatter));
     return with_field_light(std::move(fields), through_middle(view, std::move(scatter)));
 }
 

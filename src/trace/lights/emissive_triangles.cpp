@@ -70,7 +70,8 @@ EmissivePoint sample_triangles(const EmissiveTriangles& emissive, const Occluder
     hit.instance[0] = triangle.instance, hit.triangle[0] = triangle.triangle;
     hit.u[0] = root * (1 - v.y), hit.v[0] = root * v.y;
     const SurfacePoint surface = surfaces.surface(Ray{}, hit, 0);
-    return {surface.position, surface.face_normal, surface.emission, triangle.probability / triangle.area};
+    return {surface.position, surface.face_normal, surface.emission, triangle.probability / triangle.area,
+            triangle.instance};
 }
 
 float triangle_pdf(const EmissiveTriangles& emissive, int instance, int triangle) {

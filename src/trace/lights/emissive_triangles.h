@@ -30,6 +30,7 @@ struct EmissivePoint {
     vec3 position{0}, normal{0}; // of the face
     vec3 emission{0};            // radiance
     float pdf = 0;               // 1/m²
+    int instance = 0;            // of the scene
 };
 EmissivePoint sample_triangles(const EmissiveTriangles& emissive, const Occluders& surfaces, float u, vec2 v);
 
