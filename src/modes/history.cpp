@@ -17,10 +17,6 @@ constexpr float switched = 0.8f;     // minimum ratio of a light's intensities i
 constexpr float moved_on = 5e-4f;    // fraction of a light's distance from the camera, or radians: larger moves leave
                                      // visible trails over ten frames
 
-bool same(const Settings& a, const Settings& b) {
-    return std::ranges::all_of(setting_rows(), [&](const SettingRow& row) { return row.get(a) == row.get(b); });
-}
-
 bool is_cut(const View& a, const View& b, const Snapshot& snapshot) {
     const Camera &from = a.camera, &to = b.camera;
     const bool lens = from.vertical_fov != to.vertical_fov || from.ortho_height != to.ortho_height;
@@ -77,7 +73,7 @@ int update_history(History& history, const View& view, const Snapshot& snapshot,
     const std::vector<Light>& lights = snapshot.lights;
     const vec3 ambient = mean_ambient(snapshot);
     bool goes_on = history.frames > 0 && history.scene == snapshot.scene && history.view.size == view.size &&
-                   !is_cut(history.view, view, snapshot) && same(history.settings, settings) &&
+                   !is_cut(history.view, view, snapshot) && same_settings(history.settings, settings) &&
                    !is_switched(history.ambient, ambient) &&
                    std::ranges::equal(history.lights, lights,
                                       [](const Light& from, const Light& to) { return !is_switched(from, to); });

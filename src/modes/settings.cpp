@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/text.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace tyndall {
@@ -52,17 +53,24 @@ const std::vector<SettingRow>& setting_rows() {
     return rows;
 }
 
+const SettingRow& find_row(std::string_view name, std::string_view where) {
+    std::vector<std::string> names;
+    for (const SettingRow& row : setting_rows()) {
+        if (row.name == name) return row;
+        names.push_back(row.name);
+    }
+    fail(ExitCode::usage, where, unknown_name("setting", name, names) + " (tyndall modes --settings lists them)");
+}
+
+bool same_settings(const Settings& a, const Settings& b) {
+    return std::ranges::all_of(setting_rows(), [&](const SettingRow& row) { return row.get(a) == row.get(b); });
+}
+
 void apply_setting(Settings& settings, std::string_view assignment) {
     const size_t equals = assignment.find('=');
     if (equals == std::string_view::npos)
         fail(ExitCode::usage, "--set", "expected row=value, got '" + printable(assignment, 60) + "'");
-    const std::string_view name = assignment.substr(0, equals);
-    std::vector<std::string> names;
-    for (const SettingRow& row : setting_rows()) {
-        if (row.name == name) return row.set(settings, assignment.substr(equals + 1));
-        names.push_back(row.name);
-    }
-    fail(ExitCode::usage, "--set", unknown_name("setting", name, names) + " (tyndall modes --settings lists them)");
+    find_row(assignment.substr(0, equals)).set(settings, assignment.substr(equals + 1));
 }
 
 Settings settings_for(Quality quality) {

@@ -74,7 +74,13 @@ struct SettingRow {
 };
 const std::vector<SettingRow>& setting_rows();
 
-// Applies "march.step_depth=0.1". Throws Error (usage); for an unknown row the message suggests the nearest name.
+// The row of a name. Throws Error (usage) at `where`, suggesting the nearest name.
+const SettingRow& find_row(std::string_view name, std::string_view where = "--set");
+
+// Whether all rows are equal.
+bool same_settings(const Settings& a, const Settings& b);
+
+// Applies "march.step_depth=0.1". Throws Error (usage).
 void apply_setting(Settings& settings, std::string_view assignment);
 
 // Names of the default modes (modes/mode.h): for final images, and for interactive previews.

@@ -51,8 +51,8 @@ std::vector<std::string> free_rows(const Mode& mode, const Settings& settings, Q
     const Settings usual = settings_for(quality);
     std::vector<std::string> names = ladder_rows(mode);
     std::erase_if(names, [&](const std::string& name) {
-        const auto row = std::ranges::find(setting_rows(), name, &SettingRow::name);
-        return row->get(settings) != row->get(usual);
+        const SettingRow& row = find_row(name);
+        return row.get(settings) != row.get(usual);
     });
     return names;
 }

@@ -9,10 +9,6 @@ namespace tyndall {
 namespace {
 constexpr double truth_work_share = 0.2; // of the image's work, without a time limit
 constexpr int truth_marches = 64;        // nodes along a ray from which the ground truth marches to each light
-
-bool same_settings(const Settings& a, const Settings& b) {
-    return std::ranges::all_of(setting_rows(), [&](const SettingRow& row) { return row.get(a) == row.get(b); });
-}
 }
 
 std::shared_ptr<Pilot> Chooser::pilot(TileChances chances, uint32_t salt, std::shared_ptr<const Prepared> ready,

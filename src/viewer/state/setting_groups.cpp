@@ -1,7 +1,5 @@
 #include "viewer/state/setting_groups.h"
 
-#include "base/error.h"
-#include "base/text.h"
 #include "modes/mode.h"
 
 #include <algorithm>
@@ -29,15 +27,6 @@ std::vector<SettingGroup> setting_groups(const Mode& mode) {
     append_group(mode, "style", "style", groups);
     append_group(mode, "pixels", "pixel", groups);
     return groups;
-}
-
-const SettingRow& find_row(std::string_view name) {
-    std::vector<std::string> names;
-    for (const SettingRow& row : setting_rows()) {
-        if (row.name == name) return row;
-        names.push_back(row.name);
-    }
-    fail(ExitCode::usage, "set", unknown_name("setting", name, names));
 }
 
 SliderRange slider_range(const SettingRow& row, double usual, double value) {

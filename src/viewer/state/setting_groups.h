@@ -13,9 +13,6 @@ struct SettingGroup {
 // Groups of a mode: its own settings first, then the light's terms, multiple scattering, style and pixels.
 std::vector<SettingGroup> setting_groups(const Mode& mode);
 
-// The row with a name. Throws Error (usage) that suggests the nearest one.
-const SettingRow& find_row(std::string_view name);
-
 // The part of a setting's range that its slider covers: around the usual value if the whole range spans many powers of
 // ten, and always including the value itself.
 struct SliderRange {

@@ -44,7 +44,7 @@ void reset_setting(ViewState& state, const Action& action) {
     if (action.words[0] == "all") {
         state.settings = usual;
     } else {
-        const SettingRow& row = find_row(action.words[0]);
+        const SettingRow& row = find_row(action.words[0], "reset");
         row.set(state.settings, row.get(usual));
     }
     ++state.revision;
