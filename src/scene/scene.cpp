@@ -43,6 +43,14 @@ mat4 node_matrix(const Scene& scene, int node, double seconds) {
     return world;
 }
 
+std::string name_of_instance(const Scene& scene, int instance) {
+    const Instance& placed = scene.instances[static_cast<size_t>(instance)];
+    if (placed.node >= 0 && !scene.nodes[static_cast<size_t>(placed.node)].name.empty())
+        return scene.nodes[static_cast<size_t>(placed.node)].name;
+    const std::string& name = scene.meshes[static_cast<size_t>(placed.mesh)].name;
+    return name.empty() ? "mesh " + std::to_string(placed.mesh) : name;
+}
+
 bool is_hidden(const Scene& scene, const LightSource& light, double seconds) {
     if (light.node < 0) return false;
     const mat4 matrix = node_matrix(scene, light.node, seconds);

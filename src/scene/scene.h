@@ -237,6 +237,9 @@ Scene load_scene_text(std::string_view text, const std::filesystem::path& file, 
 dmat4 world_matrix(const Scene& scene, int node, double seconds);
 mat4 node_matrix(const Scene& scene, int node, double seconds);
 
+// The name of an instance's node, else of its mesh, else "mesh 3".
+std::string name_of_instance(const Scene& scene, int instance);
+
 // Whether a light is off because its node has a scale of 0 along the light's direction: a usual way to hide things.
 bool is_hidden(const Scene& scene, const LightSource& light, double seconds);
 

@@ -100,7 +100,8 @@ void add_surface(const RayScene& scene, const Prepared& prepared, int layer, con
     if (s.face[0] >= 0)
         surface.name = scene.snapshot.lights[static_cast<size_t>(s.face[0])].name;
     else
-        surface.name = name_of_instance(scene.snapshot, instance), surface.material = material_of(scene, instance);
+        surface.name = name_of_instance(*scene.snapshot.scene, instance),
+        surface.material = material_of(scene, instance);
     if (is_matte(scene.snapshot, instance)) surface.radiance = vec3(0), of_lights.assign(of_lights.size(), vec3(0));
     surface.alpha = point.alpha, surface.share = mean_component(path.throughput) * point.alpha;
     const vec3 share = path.throughput * point.alpha;
@@ -157,15 +158,6 @@ double difference(const ModeResult& result, const ModeResult& reference) {
 std::string_view name_of(LightState state) {
     constexpr std::string_view names[] = {"lit", "penumbra", "shadow", "out of reach"};
     return names[static_cast<size_t>(state)];
-}
-
-std::string name_of_instance(const Snapshot& snapshot, int instance) {
-    const Scene& scene = *snapshot.scene;
-    const Instance& placed = scene.instances[static_cast<size_t>(instance)];
-    if (placed.node >= 0 && !scene.nodes[static_cast<size_t>(placed.node)].name.empty())
-        return scene.nodes[static_cast<size_t>(placed.node)].name;
-    const std::string& name = scene.meshes[static_cast<size_t>(placed.mesh)].name;
-    return name.empty() ? "mesh " + std::to_string(placed.mesh) : name;
 }
 
 RayReport explain_ray(const View& view, const Snapshot& snapshot, const Settings& settings, ivec2 pixel,

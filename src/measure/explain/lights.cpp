@@ -3,6 +3,7 @@
 #include "volume/medium.h"
 
 #include "integrate/lights/light_along.h"
+#include "scene/scene.h"
 #include "trace/shadows/intervals/shadow_slices.h"
 
 #include <algorithm>
@@ -145,7 +146,7 @@ void name_blockers(const RayScene& scene, const RaySegment& segment, LightOnSegm
                 const int instance =
                     blocking_instance(*scene.casters(on.light), ray_to_point(on.points[p], point_at(segment.ray, t)));
                 if (instance < 0) continue;
-                const std::string name = name_of_instance(scene.snapshot, instance);
+                const std::string name = name_of_instance(*scene.snapshot.scene, instance);
                 const auto known = std::ranges::find(counts, name, &std::pair<int, std::string>::second);
                 if (known == counts.end())
                     counts.push_back({-1, name});

@@ -54,7 +54,5 @@ void name_blockers(const RayScene& scene, const RaySegment& segment, LightOnSegm
 // Appends the part's steps, with what each light contributes and where it shines.
 void append_fog(const RayScene& scene, const RaySegment& segment, RayReport& report);
 
-std::string name_of_instance(const Snapshot& snapshot, int instance);
-
 ModeResult mode_result(const Mode& mode, const RayScene& scene, const RayReport& report);
 }

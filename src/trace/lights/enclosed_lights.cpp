@@ -74,12 +74,6 @@ bool seen_by_camera(const Light& light, const Snapshot& snapshot, const Occluder
     return false;
 }
 
-std::string name_of(const Scene& scene, int instance) {
-    const Instance& object = scene.instances[static_cast<size_t>(instance)];
-    return object.node >= 0 ? scene.nodes[static_cast<size_t>(object.node)].name
-                            : scene.meshes[static_cast<size_t>(object.mesh)].name;
-}
-
 std::optional<std::string> line_of(const Light& light, const Snapshot& snapshot) {
     const auto& occluders = shadow_casters(light, snapshot);
     if (!occluders || is_distant(light)) return {};
@@ -92,7 +86,7 @@ std::optional<std::string> line_of(const Light& light, const Snapshot& snapshot)
     const auto by_share = [](const auto& a, const auto& b) { return a.second < b.second; };
     const auto most = std::ranges::max_element(around.by_node, by_share);
     if (most->second < of_one_object || seen_by_camera(light, snapshot, *occluders, around.farthest)) return {};
-    const std::string object = printable(name_of(*snapshot.scene, around.instance.at(most->first)), 80);
+    const std::string object = printable(name_of_instance(*snapshot.scene, around.instance.at(most->first)), 80);
     return named("light", printable(light.name, 80)) + " is enclosed by the object \"" + object + "\": " +
            formatted("%.0f %% of its light is blocked within %.2g m", 100 * around.blocked, double(around.farthest)) +
            "; to let it through, add {\"name\": \"" + object + "\", \"casts_shadows\": false} to \"objects\"";
