@@ -95,11 +95,11 @@ ExrFile read_exr_rows(const std::filesystem::path& file, int first, int count) {
     });
 }
 
-Image<vec3> color_of(const ExrFile& exr) {
+Image<vec3> color_of(const ExrFile& exr, std::string_view layer) {
     Image<vec3> color(exr.size);
-    constexpr std::string_view names[] = {"R", "G", "B"};
+    const std::string prefix = layer.empty() ? "" : std::string(layer) + ".";
     for (int c = 0; c < 3; ++c)
-        if (const Image<float>* channel = exr.channel(names[c]))
+        if (const Image<float>* channel = exr.channel(prefix + "RGB"[c]))
             for (size_t i = 0; i < color.pixels.size(); ++i) color.pixels[i][c] = channel->pixels[i];
     return color;
 }

@@ -19,8 +19,8 @@ struct ExrFile {
     const Image<float>* channel(std::string_view name) const;
 };
 
-// R, G and B; black where the file lacks them.
-Image<vec3> color_of(const ExrFile& exr);
+// R, G and B of a layer, or of the image; black where the file lacks them.
+Image<vec3> color_of(const ExrFile& exr, std::string_view layer = {});
 
 // Decodes every pixel; of tiled files the largest level. Throws Error (unreadable, refused): only single-part flat
 // images without subsampled channels, within the limits, are read.

@@ -7,12 +7,6 @@ namespace tyndall {
 namespace {
 constexpr double rel_mse_epsilon = 0.01; // of the squared mean
 
-Image<vec3> difference(const Image<vec3>& a, const Image<vec3>& b) {
-    Image<vec3> result = a;
-    for (size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] -= b.pixels[i];
-    return result;
-}
-
 double mean_of(const Image<vec3>& image) {
     double sum = 0;
     for (const vec3 value : image.pixels) sum += double{value.x} + value.y + value.z;
@@ -68,8 +62,8 @@ ReferenceMetrics make_metrics(const Reference& reference, bool lights_only) {
     if (lights_only) {
         for (size_t half = 0; half < 2; ++half) {
             const ColorLayers& unlit = reference.unlit[half];
-            result.halves[half].color = difference(result.halves[half].color, unlit.color);
-            result.halves[half].inscatter = difference(result.halves[half].inscatter, unlit.inscatter);
+            result.halves[half].color = minus(result.halves[half].color, unlit.color);
+            result.halves[half].inscatter = minus(result.halves[half].inscatter, unlit.inscatter);
         }
         result.added = mean_of(reference.unlit);
     }
@@ -133,7 +127,7 @@ double chart_flicker(std::span<const ReferenceMetrics> frames, std::span<const C
     for (size_t t = 0; t < frames.size(); ++t) {
         mean += frames[t].mean / static_cast<double>(frames.size());
         if (t == 0) continue;
-        const auto change = [t](const auto& image_at) { return difference(image_at(t), image_at(t - 1)); };
+        const auto change = [t](const auto& image_at) { return minus(image_at(t), image_at(t - 1)); };
         const Image<vec3> own = change([&](size_t i) -> const Image<vec3>& { return pictures[i].color; });
         const Image<vec3> a = change([&](size_t i) -> const Image<vec3>& { return frames[i].halves[0].color; });
         const Image<vec3> b = change([&](size_t i) -> const Image<vec3>& { return frames[i].halves[1].color; });

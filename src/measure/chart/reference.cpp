@@ -35,15 +35,6 @@ RenderRequest half_request(const Shot& shot, ReferenceSamples samples, int half)
     return request;
 }
 
-Image<vec3> layer_of(const ExrFile& exr, const std::string& name) {
-    const Image<float>* channels[3];
-    for (int c = 0; c < 3; ++c) channels[c] = exr.channel(name + "." + "RGB"[c]);
-    Image<vec3> image(exr.size);
-    for (size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = {channels[0]->pixels[i], channels[1]->pixels[i], channels[2]->pixels[i]};
-    return image;
-}
-
 // The settings of the main mode that integrate fog fast enough for the goal's noise.
 std::shared_ptr<const Choice> choice_for(const Shot& shot, const Snapshot& snapshot, const Goal& goal) {
     FrameOptions options;
@@ -90,7 +81,7 @@ ColorLayers rendered(const Shot& shot, const Snapshot& snapshot, const RenderReq
         std::string why;
         std::vector<std::string> channels = channel_names({}, false, exact_colors);
         if (const auto kept = finished_frame(file, {view.size, ivec2(0), view.size, channels, hash}, why))
-            return {color_of(*kept), layer_of(*kept, "inscatter")};
+            return {color_of(*kept), color_of(*kept, "inscatter")};
     }
     FrameOptions options;
     options.cancel = shot.cancel, options.progress = progress;

@@ -61,6 +61,12 @@ void add_rel_mse(const Image<vec3>& test, const Image<vec3>& reference, Errors& 
 }
 }
 
+Image<vec3> minus(const Image<vec3>& a, const Image<vec3>& b) {
+    Image<vec3> result = a;
+    for (size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] -= b.pixels[i];
+    return result;
+}
+
 double relative(double error, double mean_reference) {
     if (error == 0 || std::isnan(error)) return error;
     return mean_reference > 0 ? error / mean_reference : std::copysign(std::numeric_limits<double>::infinity(), error);

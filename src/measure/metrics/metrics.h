@@ -26,6 +26,9 @@ struct Errors {
 // Both images must have the same size.
 Errors measure_errors(const Image<vec3>& test, const Image<vec3>& reference);
 
+// Pixel by pixel, of images of the same size.
+Image<vec3> minus(const Image<vec3>& a, const Image<vec3>& b);
+
 // An error relative to the reference's mean. 0 stays 0 for any mean; another error is infinite if the mean is not
 // positive.
 double relative(double error, double mean_reference);

@@ -8,18 +8,14 @@ namespace tyndall {
 namespace {
 using Channels = std::map<std::string, const Image<float>*>; // of one layer, by what follows the last dot
 
-Image<vec3> combined(const Image<float>& r, const Image<float>& g, const Image<float>& b) {
-    Image<vec3> result(r.size);
-    for (size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] = {r.pixels[i], g.pixels[i], b.pixels[i]};
+Image<vec3> gray_of(const Image<float>& value) {
+    Image<vec3> result(value.size);
+    for (size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] = vec3(value.pixels[i]);
     return result;
 }
 
 bool is_color(const Channels& channels) {
     return channels.contains("R") && channels.contains("G") && channels.contains("B");
-}
-
-Image<vec3> color_of(const Channels& channels) {
-    return combined(*channels.at("R"), *channels.at("G"), *channels.at("B"));
 }
 
 [[noreturn]] void refuse_colorless(const std::string& file, const std::map<std::string, Channels>& layers) {
@@ -58,14 +54,12 @@ ExrColors read_exr_colors(const std::filesystem::path& file) {
     const Channels& own = layers[""];
     picture.gray = !is_color(own);
     if (picture.gray && !own.contains("Y")) refuse_colorless(picture.file, layers);
-    picture.beauty = picture.gray ? combined(*own.at("Y"), *own.at("Y"), *own.at("Y")) : color_of(own);
+    picture.beauty = picture.gray ? gray_of(*own.at("Y")) : color_of(exr);
 
     for (const auto& [name, channels] : layers) {
         if (name.empty()) continue;
-        if (is_color(channels)) picture.layers[name] = color_of(channels);
-        if (channels.size() != 1) continue;
-        const Image<float>& value = *channels.begin()->second;
-        picture.layers[name] = combined(value, value, value);
+        if (is_color(channels)) picture.layers[name] = color_of(exr, name);
+        if (channels.size() == 1) picture.layers[name] = gray_of(*channels.begin()->second);
     }
     return picture;
 }

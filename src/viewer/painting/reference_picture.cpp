@@ -41,15 +41,9 @@ double standard_error(const Image<vec3>& a, const Image<vec3>& b, std::array<int
 
 bool has_halves(const Rounds& rounds) { return rounds.half_samples[0] > 0 && rounds.half_samples[1] > 0; }
 
-Image<vec3> difference(const Image<vec3>& a, const Image<vec3>& b) {
-    Image<vec3> result = a;
-    for (size_t i = 0; i < result.pixels.size(); ++i) result.pixels[i] -= b.pixels[i];
-    return result;
-}
-
 // Noise of the difference between a layer of an image and of the reference.
 double noise_of(const Rounds& picture, const Rounds& reference, Image<vec3> ColorLayers::*layer, double mean) {
-    const auto half = [&](size_t i) { return difference(picture.halves[i].*layer, reference.halves[i].*layer); };
+    const auto half = [&](size_t i) { return minus(picture.halves[i].*layer, reference.halves[i].*layer); };
     return standard_error(half(0), half(1), reference.half_samples, mean);
 }
 
