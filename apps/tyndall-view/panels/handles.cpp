@@ -138,24 +138,24 @@ Grip grip_at(const std::vector<LightIcon>& icons, const LightIcon* selected, std
 }
 
 // A press selects the light and begins a drag.
-void take_hold(const ViewState& state, ivec2 size, const Grip& grip, vec2 pixel, float length, EditState& memory,
+void take_hold(const ViewState& state, ivec2 size, const Grip& grip, vec2 pixel, float length, EditState& edits,
                const Act& act) {
-    memory.has_mouse = true, memory.moved = false;
+    edits.has_mouse = true, edits.moved = false;
     if (state.playing) act({Verb::stop, {}, {}, {}});
     act(selection_of(*state.scene, {Part::light, grip.icon->light}));
-    memory.drag = begin_drag(state, size, *grip.icon, grip.handle.value_or(Handle::view), pixel, length, memory.drags);
+    edits.drag = begin_drag(state, size, *grip.icon, grip.handle.value_or(Handle::view), pixel, length, edits.drags);
 }
 
-void drag_on(vec2 pixel, float scale, EditState& memory, const Act& act) {
-    if (!memory.drag) return;
+void drag_on(vec2 pixel, float scale, EditState& edits, const Act& act) {
+    if (!edits.drag) return;
     if (ImGui::IsKeyPressed(ImGui::GetIO().KeyMap[ImGuiKey_Escape], false)) {
-        if (memory.moved) act({Verb::cancel, {}, {static_cast<double>(memory.drag->number)}, {}});
-        memory.drag.reset();
+        if (edits.moved) act({Verb::cancel, {}, {static_cast<double>(edits.drag->number)}, {}});
+        edits.drag.reset();
         return;
     }
-    memory.moved |= scale * glm::distance(pixel, memory.drag->from) > still;
-    if (!memory.moved || (ImGui::GetIO().MouseDelta.x == 0 && ImGui::GetIO().MouseDelta.y == 0)) return;
-    for (const Action& action : drag_actions(*memory.drag, pixel)) act(action);
+    edits.moved |= scale * glm::distance(pixel, edits.drag->from) > still;
+    if (!edits.moved || (ImGui::GetIO().MouseDelta.x == 0 && ImGui::GetIO().MouseDelta.y == 0)) return;
+    for (const Action& action : drag_actions(*edits.drag, pixel)) act(action);
 }
 
 std::string place_text(const ViewState& state, const LightIcon& icon, Handle handle) {
@@ -165,14 +165,14 @@ std::string place_text(const ViewState& state, const LightIcon& icon, Handle han
 }
 }
 
-bool draw_handles(const ViewState& state, ivec2 size, const ImageRect& place, EditState& memory, const Act& act) {
+bool draw_handles(const ViewState& state, ivec2 size, const ImageRect& place, EditState& edits, const Act& act) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) memory.has_mouse = false, memory.drag.reset();
-    if (!state.scene || !state.lights_tab || !state.handles) return memory.has_mouse;
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) edits.has_mouse = false, edits.drag.reset();
+    if (!state.scene || !state.lights_tab || !state.handles) return edits.has_mouse;
     const Zoom zoom{{place.low.x, place.low.y}, place.height() / static_cast<float>(size.y)};
     const float type = ImGui::GetFontSize(), length = 4.7f * type / zoom.scale, reach = 0.75f * type / zoom.scale;
     const vec2 pixel = zoom.back(io.MousePos);
-    if (!has_camera(state)) return memory.has_mouse;
+    if (!has_camera(state)) return edits.has_mouse;
     const Camera camera = camera_now(state);
 
     const std::vector<LightIcon> icons = icons_in_view(state, size, 3 * type / zoom.scale);
@@ -183,11 +183,11 @@ bool draw_handles(const ViewState& state, ivec2 size, const ImageRect& place, Ed
     if (selected) handles = light_handles(camera, size, *selected, *state.scene, seconds_of(state), length);
 
     const bool pressed = ImGui::IsMouseClicked(ImGuiMouseButton_Left) && !io.KeyShift;
-    const bool looks = ImGui::IsItemHovered() && !memory.has_mouse && (pressed || !ImGui::IsItemActive());
+    const bool looks = ImGui::IsItemHovered() && !edits.has_mouse && (pressed || !ImGui::IsItemActive());
     const Grip grip = looks ? grip_at(icons, selected, handles, pixel, reach) : Grip{};
-    if (grip.icon && pressed) take_hold(state, size, grip, pixel, length, memory, act);
-    if (memory.has_mouse) drag_on(pixel, zoom.scale, memory, act);
-    if (grip.icon || memory.drag) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (grip.icon && pressed) take_hold(state, size, grip, pixel, length, edits, act);
+    if (edits.has_mouse) drag_on(pixel, zoom.scale, edits, act);
+    if (grip.icon || edits.drag) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
 
     ImGui::PushClipRect(place.low, place.high, true);
     for (const LightIcon& icon : icons) {
@@ -202,13 +202,13 @@ bool draw_handles(const ViewState& state, ivec2 size, const ImageRect& place, Ed
     if (selected)
         for (const HandlePoint& handle : handles)
             draw_handle(zoom(selected->pixel), zoom(handle.pixel), handle.handle,
-                        memory.drag ? memory.drag->handle == handle.handle
-                                    : grip.icon == selected && grip.handle == handle.handle);
-    if (memory.drag && memory.moved && selected)
-        draw_words(zoom(selected->pixel), place_text(state, *selected, memory.drag->handle));
+                        edits.drag ? edits.drag->handle == handle.handle
+                                   : grip.icon == selected && grip.handle == handle.handle);
+    if (edits.drag && edits.moved && selected)
+        draw_words(zoom(selected->pixel), place_text(state, *selected, edits.drag->handle));
     else if (grip.icon)
         draw_words(zoom(grip.icon->pixel), printable(state.scene->lights[grip.icon->light].name, 40));
     ImGui::PopClipRect();
-    return memory.has_mouse;
+    return edits.has_mouse;
 }
 }

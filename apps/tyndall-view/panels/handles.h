@@ -12,5 +12,5 @@ struct ImageRect {
 
 // Call after the item that takes the mouse on the image. Returns true while a light has the mouse, so that the camera
 // stays.
-bool draw_handles(const ViewState& state, ivec2 size, const ImageRect& place, EditState& memory, const Act& act);
+bool draw_handles(const ViewState& state, ivec2 size, const ImageRect& place, EditState& edits, const Act& act);
 }

@@ -65,19 +65,19 @@ std::string proposed_name(const SceneSession& session) {
     return file.string();
 }
 
-void draw_save_as(const ViewState& state, EditState& memory, const Act& act) {
-    propose_name(state, memory);
+void draw_save_as(const ViewState& state, EditState& edits, const Act& act) {
+    propose_name(state, edits);
     const float width = ImGui::CalcTextSize("Save as").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(-width - ImGui::GetStyle().ItemSpacing.x);
-    if (ImGui::InputText("##file", &memory.file_name)) memory.file_exists = is_taken(memory.file_name);
-    tip(memory.file_name.c_str());
+    if (ImGui::InputText("##file", &edits.file_name)) edits.file_exists = is_taken(edits.file_name);
+    tip(edits.file_name.c_str());
     ImGui::SameLine();
-    if (memory.file_exists) ImGui::PushStyleColor(ImGuiCol_Text, caution);
-    const bool pressed = ImGui::Button(memory.file_exists ? "Replace" : "Save as", {width, 0});
-    if (memory.file_exists) ImGui::PopStyleColor();
-    tip(memory.file_exists ? "This file exists: overwrite it and continue with it"
-                           : "Write a scene file with this name and continue with it");
-    if (pressed) act({Verb::save_as, {memory.file_name}, {}, {}});
+    if (edits.file_exists) ImGui::PushStyleColor(ImGuiCol_Text, caution);
+    const bool pressed = ImGui::Button(edits.file_exists ? "Replace" : "Save as", {width, 0});
+    if (edits.file_exists) ImGui::PopStyleColor();
+    tip(edits.file_exists ? "This file exists: overwrite it and continue with it"
+                          : "Write a scene file with this name and continue with it");
+    if (pressed) act({Verb::save_as, {edits.file_name}, {}, {}});
 }
 
 // A color scaled so that its largest component is 1.
@@ -133,7 +133,7 @@ void draw_list(const ViewState& state, const Act& act) {
                   ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled), act);
 }
 
-void draw_selected(const ViewState& state, EditState& memory, const Act& act) {
+void draw_selected(const ViewState& state, EditState& edits, const Act& act) {
     const Scene& scene = *state.scene;
     const PartRef thing = state.selected;
     if (thing.index >= count_of(scene, thing.part)) return;
@@ -146,8 +146,8 @@ void draw_selected(const ViewState& state, EditState& memory, const Act& act) {
     ImGui::PushID(part_path(scene, thing.part, thing.index).c_str());
     for (const Property* property : properties) {
         const bool sun = thing.part == Part::light && is_distant(scene.lights[thing.index]);
-        if (sun && std::string_view(property->name) == "direction") draw_sun_angles(state, thing.index, memory, act);
-        draw_property(state, *property, thing.index, memory, act);
+        if (sun && std::string_view(property->name) == "direction") draw_sun_angles(state, thing.index, edits, act);
+        draw_property(state, *property, thing.index, edits, act);
     }
     ImGui::PopID();
 }
@@ -158,11 +158,11 @@ bool is_taken(const std::filesystem::path& file) {
     return std::filesystem::exists(file, ignored);
 }
 
-void propose_name(const ViewState& state, EditState& memory) {
+void propose_name(const ViewState& state, EditState& edits) {
     const std::string own = state.scene->file.string();
-    if (memory.file_name_of == own) return;
-    memory.file_name_of = own, memory.file_name = proposed_name(*state.session);
-    memory.file_exists = is_taken(memory.file_name);
+    if (edits.file_name_of == own) return;
+    edits.file_name_of = own, edits.file_name = proposed_name(*state.session);
+    edits.file_exists = is_taken(edits.file_name);
 }
 
 void draw_tabs(const ViewState& state, const Act& act) {
@@ -178,11 +178,11 @@ void draw_tabs(const ViewState& state, const Act& act) {
     tab("Lights and fog", "lights", state.lights_tab);
 }
 
-void draw_lights(const ViewState& state, EditState& memory, const Act& act) {
+void draw_lights(const ViewState& state, EditState& edits, const Act& act) {
     if (!state.session) return;
-    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) memory.held.clear();
+    if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) edits.held.clear();
     draw_steps(state, act);
-    draw_save_as(state, memory, act);
+    draw_save_as(state, edits, act);
     // A long list has its own scroll bar.
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const Scene& scene = *state.scene;
@@ -190,6 +190,6 @@ void draw_lights(const ViewState& state, EditState& memory, const Act& act) {
     if (lines > max_lines) ImGui::BeginChild("list", {0, static_cast<float>(max_lines + 6) * line});
     draw_list(state, act);
     if (lines > max_lines) ImGui::EndChild();
-    draw_selected(state, memory, act);
+    draw_selected(state, edits, act);
 }
 }

@@ -1,6 +1,6 @@
 // The panels: what they draw, and the actions they issue.
 #pragma once
-#include "../edit_memory.h"
+#include "../edit_state.h"
 #include "viewer/painting/ray_question.h"
 #include "viewer/painting/shown_picture.h"
 #include "viewer/state/view_state.h"
@@ -64,7 +64,7 @@ void draw_settings(ViewState& state, PanelState& memory, const Act& act);
 std::string status_line(const ViewState& state, const ShownPicture& picture);
 
 // Asks before unsaved edits are lost or a job is ended.
-void draw_question(const ViewState& state, const PanelResources& resources, EditState& memory, const Act& act);
+void draw_question(const ViewState& state, const PanelResources& resources, EditState& edits, const Act& act);
 
 // The image with its status line.
 void draw_picture(ViewState& state, const PanelResources& resources, EditState& edits, const Act& act);
@@ -82,13 +82,13 @@ float inspector_height(const ViewState& state, float whole);
 void draw_inspector(ViewState& state, const PanelResources& resources, const Act& act);
 
 // The side panel's page for lights and fog: a list, the selected one's properties, undo and saving.
-void draw_lights(const ViewState& state, EditState& memory, const Act& act);
+void draw_lights(const ViewState& state, EditState& edits, const Act& act);
 
 // Whether the file exists and would be overwritten.
 bool is_taken(const std::filesystem::path& file);
 
 // Proposes a name to save the scene as, once per scene file.
-void propose_name(const ViewState& state, EditState& memory);
+void propose_name(const ViewState& state, EditState& edits);
 
 // Buttons that switch between the two pages of the side panel.
 void draw_tabs(const ViewState& state, const Act& act);

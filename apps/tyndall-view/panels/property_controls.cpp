@@ -23,8 +23,8 @@ std::string number_format(const Property& property, float value) {
 }
 
 // The range of a slider, which stays fixed while it is held.
-SliderRange held_range(const Property& property, float value, const std::string& path, const EditState& memory) {
-    return memory.held == path ? memory.range : slider_range(property, value);
+SliderRange held_range(const Property& property, float value, const std::string& path, const EditState& edits) {
+    return edits.held == path ? edits.range : slider_range(property, value);
 }
 
 bool edit_number(const Property& property, const SliderRange& range, vec3& value) {
@@ -100,16 +100,16 @@ void draw_diamond(float right, float middle) {
 }
 
 // Stores the reason without the path of the property, since it is shown at the property's control.
-void note_refusal(const ViewState& state, Part part, const std::string& path, EditState& memory) {
-    memory.refused.clear();
+void note_refusal(const ViewState& state, Part part, const std::string& path, EditState& edits) {
+    edits.refused.clear();
     if (state.message.empty() || !state.message_is_error) return;
     const std::string prefix = path + ": ";
     const bool here = state.message.starts_with(prefix);
-    memory.refused = path, memory.why = with_labels(part, here ? state.message.substr(prefix.size()) : state.message);
+    edits.refused = path, edits.why = with_labels(part, here ? state.message.substr(prefix.size()) : state.message);
 }
 
 // Changes within one mouse drag form one undo step; each typed value is its own.
-uint64_t drag_now(const EditState& memory) { return ImGui::IsMouseDown(ImGuiMouseButton_Left) ? memory.drags : 0; }
+uint64_t drag_now(const EditState& edits) { return ImGui::IsMouseDown(ImGuiMouseButton_Left) ? edits.drags : 0; }
 
 // A label on the left; returns whether the mouse is on it.
 bool draw_label(const char* text, bool keyed) {
@@ -130,7 +130,7 @@ ImVec4 shown_color(vec3 linear) {
     return {srgb_encoded(color.x), srgb_encoded(color.y), srgb_encoded(color.z), 1};
 }
 
-void draw_property(const ViewState& state, const Property& property, size_t index, EditState& memory, const Act& act) {
+void draw_property(const ViewState& state, const Property& property, size_t index, EditState& edits, const Act& act) {
     const Scene& scene = *state.scene;
     const double seconds = seconds_of(state);
     vec3 value = value_at(scene, property, index, seconds);
@@ -139,26 +139,26 @@ void draw_property(const ViewState& state, const Property& property, size_t inde
 
     ImGui::PushID(property.name);
     bool hovered = draw_label(words_of(property).label, keyed);
-    const SliderRange range = held_range(property, value.x, path, memory);
+    const SliderRange range = held_range(property, value.x, path, edits);
     ImGui::BeginGroup();
     const bool changed = edit_value(property, range, value);
     ImGui::EndGroup();
-    if (ImGui::IsItemActivated()) memory.held = path, memory.range = range;
+    if (ImGui::IsItemActivated()) edits.held = path, edits.range = range;
     if (changed) {
-        act(action_of(scene, {property.part, index, property.name, value, seconds}, drag_now(memory)));
-        note_refusal(state, property.part, path, memory);
+        act(action_of(scene, {property.part, index, property.name, value, seconds}, drag_now(edits)));
+        note_refusal(state, property.part, path, edits);
     }
     hovered |= ImGui::IsItemHovered() && !ImGui::IsItemActive() && !ImGui::IsPopupOpen("palette");
     if (hovered) explain(property, path, keyed);
-    if (memory.refused == path) {
+    if (edits.refused == path) {
         ImGui::PushStyleColor(ImGuiCol_Text, trouble);
-        ImGui::TextWrapped("%s", memory.why.c_str());
+        ImGui::TextWrapped("%s", edits.why.c_str());
         ImGui::PopStyleColor();
     }
     ImGui::PopID();
 }
 
-void draw_sun_angles(const ViewState& state, size_t light, const EditState& memory, const Act& act) {
+void draw_sun_angles(const ViewState& state, size_t light, const EditState& edits, const Act& act) {
     const double seconds = seconds_of(state);
     const vec3 direction = light_placement(*state.scene, light, seconds).direction;
     SunAngles angles = sun_angles(direction);
@@ -171,7 +171,7 @@ void draw_sun_angles(const ViewState& state, size_t light, const EditState& memo
         ImGui::PopID();
         if (changed)
             act(action_of(*state.scene, {Part::light, light, "direction", direction_from(angles), seconds},
-                          drag_now(memory)));
+                          drag_now(edits)));
     };
     slider("elevation", "Height of the sun above the horizon", angles.height, -10, highest_sun);
     slider("azimuth", "Direction of the sun: 0 is +z, 90 is +x", angles.azimuth, 0, 360);

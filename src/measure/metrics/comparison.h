@@ -1,9 +1,9 @@
 // All metrics of an image against its reference.
 #pragma once
+#include "measure/metrics/exr_colors.h"
 #include "measure/metrics/flip.h"
 #include "measure/metrics/halves.h"
 #include "measure/metrics/metrics.h"
-#include "measure/metrics/picture.h"
 
 #include <optional>
 #include <utility>

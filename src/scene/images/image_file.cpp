@@ -1,7 +1,7 @@
 #include "scene/images/image_file.h"
 
 #include "base/error.h"
-#include "base/exr/exr_picture.h"
+#include "base/exr/exr_image.h"
 #include "base/io/file.h"
 #include "base/srgb.h"
 #include "base/text.h"

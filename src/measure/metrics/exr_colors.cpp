@@ -1,4 +1,4 @@
-#include "measure/metrics/picture.h"
+#include "measure/metrics/exr_colors.h"
 
 #include "base/error.h"
 #include "base/text.h"

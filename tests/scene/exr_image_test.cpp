@@ -1,6 +1,6 @@
 // OpenEXR pictures as programs write them: each compression, tiles, parts, luminance and chroma; and damaged ones.
 #include "base/error.h"
-#include "base/exr/exr_picture.h"
+#include "base/exr/exr_image.h"
 #include "base/io/file.h"
 #include "base/random.h"
 #include "scene/images/image_file.h"
@@ -159,7 +159,7 @@ constexpr Imf::Compression all_compressions[] = {
 // Half floats err by 2^-11 of a value; B44 and DWA by design.
 double allowed(Imf::Compression compression) { return compression >= Imf::B44_COMPRESSION ? .05 : 1.0 / 2048; }
 
-TEST(ExrPicture, EachCompressionOfLinesAndTiles) {
+TEST(ExrImage, EachCompressionOfLinesAndTiles) {
     const TempFolder folder;
     const Image<vec3> sky = sky_of({77, 301});
     for (const Imf::Compression compression : all_compressions) {
@@ -170,7 +170,7 @@ TEST(ExrPicture, EachCompressionOfLinesAndTiles) {
     }
 }
 
-TEST(ExrPicture, EachTypeOfNumber) {
+TEST(ExrImage, EachTypeOfNumber) {
     const TempFolder folder;
     const Image<vec3> sky = sky_of({40, 70});
     EXPECT_EQ(error_against(sky, lines_of(folder, sky, {Imf::PIZ_COMPRESSION, Imf::FLOAT})), 0);
@@ -181,7 +181,7 @@ TEST(ExrPicture, EachTypeOfNumber) {
     EXPECT_EQ(error_against(whole, lines_of(folder, whole, {Imf::PIZ_COMPRESSION, Imf::UINT})), 0);
 }
 
-TEST(ExrPicture, PartsLuminanceAndChroma) {
+TEST(ExrImage, PartsLuminanceAndChroma) {
     const TempFolder folder;
     const Image<vec3> sky = sky_of({64, 48});
     for (const Imf::Compression compression : {Imf::ZIP_COMPRESSION, Imf::PIZ_COMPRESSION, Imf::DWAA_COMPRESSION})
@@ -192,7 +192,7 @@ TEST(ExrPicture, PartsLuminanceAndChroma) {
     EXPECT_LE(error_against(gray, chroma_of(folder, gray, Imf::WRITE_Y)), 1.0 / 2048);
 }
 
-TEST(ExrPicture, WindowsLieAnywhere) {
+TEST(ExrImage, WindowsLieAnywhere) {
     const TempFolder folder;
     const Image<vec3> sky = sky_of({20, 12});
     std::string note;
@@ -216,7 +216,7 @@ std::string refusal(const std::string& bytes) {
     return error_message(ExitCode::refused, [&] { decode_image(bytes, "sky.exr", note); });
 }
 
-TEST(ExrPicture, SaysWhatItIsNot) {
+TEST(ExrImage, SaysWhatItIsNot) {
     const TempFolder folder;
     const Image<vec3> sky = sky_of({16, 8});
     const Plane plane(sky, {});
@@ -303,18 +303,18 @@ void cut_and_change(const std::vector<Seed>& files, uint32_t times) {
         }
 }
 
-TEST(ExrPicture, DamagedFilesAreOneLine) {
+TEST(ExrImage, DamagedFilesAreOneLine) {
     const TempFolder folder;
     cut_and_change(seeds(folder), 60);
 }
 
-TEST(ExrPicture, NightlyManyDamagedFilesAreOneLine) {
+TEST(ExrImage, NightlyManyDamagedFilesAreOneLine) {
     const TempFolder folder;
     cut_and_change(seeds(folder), 3000);
 }
 
 // A few hundred bytes may claim no more memory than their kind of compression can mean.
-TEST(ExrPicture, SmallFilesOfLargeClaims) {
+TEST(ExrImage, SmallFilesOfLargeClaims) {
     const TempFolder folder;
     const std::string whole = lines_of(folder, sky_of({16, 8}), {Imf::PIZ_COMPRESSION});
     const size_t window = whole.find("dataWindow");

@@ -1,4 +1,4 @@
-#include "base/exr/exr_picture.h"
+#include "base/exr/exr_image.h"
 
 #include "base/exr/exr_check.h"
 #include "base/exr/exr_stream.h"
