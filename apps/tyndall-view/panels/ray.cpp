@@ -187,17 +187,17 @@ void draw_curves(const RayReport& report, ImVec2 low, ImVec2 high) {
 
 ImVec4 color_of(double off) { return std::abs(off) < 0.02 ? good : std::abs(off) < 0.1 ? caution : trouble; }
 
-void draw_answer(const ModeResult& answer, const ModeResult* reference, const ViewState& state, const Act& act) {
+void draw_result(const ModeResult& result, const ModeResult* reference, const ViewState& state, const Act& act) {
     ImGui::TableNextColumn();
     if (!reference)
-        ImGui::TextColored(accent, "%s", answer.mode.c_str());
-    else if (ImGui::Selectable(answer.mode.c_str(), answer.mode == state.mode, ImGuiSelectableFlags_SpanAllColumns))
-        act({Verb::mode, {answer.mode}, {}, {}});
-    if (ImGui::IsItemHovered() && (!answer.remark.empty() || !answer.limitations.empty())) {
+        ImGui::TextColored(accent, "%s", result.mode.c_str());
+    else if (ImGui::Selectable(result.mode.c_str(), result.mode == state.mode, ImGuiSelectableFlags_SpanAllColumns))
+        act({Verb::mode, {result.mode}, {}, {}});
+    if (ImGui::IsItemHovered() && (!result.remark.empty() || !result.limitations.empty())) {
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(24 * ImGui::GetFontSize());
-        if (!answer.remark.empty()) ImGui::TextUnformatted(answer.remark.c_str());
-        for (const LimitationGroup& group : groups_of(answer.limitations))
+        if (!result.remark.empty()) ImGui::TextUnformatted(result.remark.c_str());
+        for (const LimitationGroup& group : groups_of(result.limitations))
             ImGui::TextUnformatted(line_of(group).c_str());
         ImGui::PopTextWrapPos();
         ImGui::EndTooltip();
@@ -209,23 +209,23 @@ void draw_answer(const ModeResult& answer, const ModeResult* reference, const Vi
         ImGui::TextColored(color, "%s", text.c_str());
     };
     const ImVec4 text = ImGui::GetStyle().Colors[ImGuiCol_Text];
-    cell(text, formatted("%.4g", double(luminance(answer.inscatter))));
-    cell(reference ? color_of(difference(answer, *reference)) : quiet,
-         !answer.finite ? "not finite"
-         : reference    ? formatted("%+.1f %%", 100 * difference(answer, *reference))
+    cell(text, formatted("%.4g", double(luminance(result.inscatter))));
+    cell(reference ? color_of(difference(result, *reference)) : quiet,
+         !result.finite ? "not finite"
+         : reference    ? formatted("%+.1f %%", 100 * difference(result, *reference))
                         : "");
-    cell(text, percent(answer.transmittance));
-    cell(answer.validity < 0.99f ? caution : quiet, percent(answer.validity));
+    cell(text, percent(result.transmittance));
+    cell(result.validity < 0.99f ? caution : quiet, percent(result.validity));
 }
 
-void draw_answers(const ViewState& state, const RayAnswer& answer, const Act& act) {
-    if (!ImGui::BeginTable("answers", 5, ImGuiTableFlags_SizingStretchProp)) return;
+void draw_results(const ViewState& state, const RayAnswer& answer, const Act& act) {
+    if (!ImGui::BeginTable("results", 5, ImGuiTableFlags_SizingStretchProp)) return;
     for (const char* head : {"technique", "fog, nits", "error", "transmitted", "valid"}) ImGui::TableSetupColumn(head);
     ImGui::PushStyleColor(ImGuiCol_Text, quiet);
     ImGui::TableHeadersRow();
     ImGui::PopStyleColor();
-    draw_answer(answer.report.reference, nullptr, state, act);
-    for (const ModeResult& one : answer.report.results) draw_answer(one, &answer.report.reference, state, act);
+    draw_result(answer.report.reference, nullptr, state, act);
+    for (const ModeResult& one : answer.report.results) draw_result(one, &answer.report.reference, state, act);
     ImGui::EndTable();
     if (!answer.complete) ImGui::TextDisabled("evaluating every technique ...");
 }
@@ -255,8 +255,8 @@ void draw_ray(const ViewState& state, const RayAnswer* answer, const Act& act) {
     const float split = std::min(0.58f * space.x, std::max(space.x - table, 0.4f * space.x));
     draw_curves(answer->report, low, {low.x + split, low.y + space.y});
     ImGui::SetCursorScreenPos({low.x + split + 1.5f * ImGui::GetFontSize(), low.y});
-    ImGui::BeginChild("answers", {0, 0});
-    draw_answers(state, *answer, act);
+    ImGui::BeginChild("results", {0, 0});
+    draw_results(state, *answer, act);
     ImGui::EndChild();
 }
 }

@@ -97,7 +97,7 @@ int run_explain(const Options& args, const Globals& globals) {
     if (!args.svg.empty()) write_file_atomically(args.svg, explain_svg(report, title));
     if (!args.csv.empty()) write_file_atomically(args.csv, explain_csv(report));
     print_report(globals.json ? explain_json(report, title) : explain_text(report, title));
-    const auto finite = [](const ModeResult& answer) { return answer.finite; };
+    const auto finite = [](const ModeResult& result) { return result.finite; };
     if (report.reference.finite && std::ranges::all_of(report.results, finite)) return 0;
     fail(ExitCode::non_finite, args.scene, "a result is not a finite number; the report shows which");
 }

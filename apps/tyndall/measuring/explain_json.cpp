@@ -52,21 +52,21 @@ Json step_json(const RayStep& step) {
                         {"glow", step.glow}});
 }
 
-Json answer_json(const ModeResult& answer, const ModeResult* reference) {
-    Json json = json_object({{"mode", answer.mode},
-                             {"accuracy", name_of(answer.accuracy)},
-                             {"fog", answer.inscatter},
-                             {"color", answer.color},
-                             {"transmittance", answer.transmittance},
-                             {"validity", answer.validity},
-                             {"steps", answer.steps},
-                             {"samples", answer.samples},
-                             {"finite", answer.finite}});
-    if (reference) json.members.emplace_back("difference", difference(answer, *reference));
-    if (answer.standard_error) json.members.emplace_back("standard_error", *answer.standard_error);
-    if (answer.image_size.x > 0) json.members.emplace_back("picture", answer.image_size);
-    if (!answer.remark.empty()) json.members.emplace_back("remark", answer.remark);
-    if (reference) json.members.emplace_back("limitations", json_of(answer.limitations));
+Json result_json(const ModeResult& result, const ModeResult* reference) {
+    Json json = json_object({{"mode", result.mode},
+                             {"accuracy", name_of(result.accuracy)},
+                             {"fog", result.inscatter},
+                             {"color", result.color},
+                             {"transmittance", result.transmittance},
+                             {"validity", result.validity},
+                             {"steps", result.steps},
+                             {"samples", result.samples},
+                             {"finite", result.finite}});
+    if (reference) json.members.emplace_back("difference", difference(result, *reference));
+    if (result.standard_error) json.members.emplace_back("standard_error", *result.standard_error);
+    if (result.image_size.x > 0) json.members.emplace_back("picture", result.image_size);
+    if (!result.remark.empty()) json.members.emplace_back("remark", result.remark);
+    if (reference) json.members.emplace_back("limitations", json_of(result.limitations));
     return json;
 }
 }
@@ -75,7 +75,7 @@ std::string explain_json(const RayReport& report, const ReportTitle& title) {
     const auto medium_json = [](const MediumOnRay& medium) {
         return json_object({{"name", medium.name}, {"depth", medium.depth}});
     };
-    const auto mode_json = [&](const ModeResult& answer) { return answer_json(answer, &report.reference); };
+    const auto mode_json = [&](const ModeResult& result) { return result_json(result, &report.reference); };
     return json_line({{"version", TYNDALL_VERSION},
                       {"scene", title.scene},
                       {"frame", title.frame},
@@ -95,7 +95,7 @@ std::string explain_json(const RayReport& report, const ReportTitle& title) {
                       {"glow", report.glow},
                       {"steps", json_list(report.steps, step_json)},
                       {"lights", json_list(report.lights, light_json)},
-                      {"reference", answer_json(report.reference, nullptr)},
+                      {"reference", result_json(report.reference, nullptr)},
                       {"modes", json_list(report.results, mode_json)}});
 }
 }

@@ -24,7 +24,7 @@ double extinction_at(const SingleScattering& frame, vec3 point) {
 }
 
 // For sampled fog: evaluates the middle of every step, where the extinction is already known.
-void add_fluence_rows(Packet& packet) {
+void add_fluence_steps(Packet& packet) {
     const SingleScattering& frame = packet.frame;
     const std::vector<Medium>& media = frame.snapshot.media;
     const Vec3s origin = Packet::rays(packet.origin), direction = Packet::rays(packet.direction);
@@ -81,7 +81,7 @@ void add_fluence_nodes(Packet& packet) {
 
 void add_fluence(Packet& packet) {
     if (!packet.frame.fluence) return;
-    packet.frame.sampled ? add_fluence_rows(packet) : add_fluence_nodes(packet);
+    packet.frame.sampled ? add_fluence_steps(packet) : add_fluence_nodes(packet);
 }
 }
 }

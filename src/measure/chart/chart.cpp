@@ -55,9 +55,9 @@ ChartStage make_stage(const Scene& scene, const ChartJob& job, std::atomic<bool>
 constexpr double share_of_planning = 0.05;
 
 // Progress over the parts of the work, weighted by the seconds they are expected to take.
-class Plan {
+class ChartProgress {
 public:
-    explicit Plan(const ChartControl& control) : control_(control) {}
+    explicit ChartProgress(const ChartControl& control) : control_(control) {}
     void expect(double seconds) { total_ += seconds; }
     void show(double share_of_part, double seconds_of_part) const {
         if (!control_.progress || total_ == 0) return;
@@ -121,9 +121,9 @@ std::string hash_of(const References& references, const ChartJob& job, FileHashe
     return content_hash(text);
 }
 
-void render_references(ChartStage& stage, References& references, Chart& chart, FileHashes& files, const Plan& plan,
-                       double seconds) {
-    references.picture.progress = [&](double done) { plan.show(done, seconds); };
+void render_references(ChartStage& stage, References& references, Chart& chart, FileHashes& files,
+                       const ChartProgress& progress, double seconds) {
+    references.picture.progress = [&](double done) { progress.show(done, seconds); };
     const Reference reference = make_reference(references.picture, picture_samples(stage.job), files);
     const bool unlit = wants_unlit(stage.job);
     stage.all = make_metrics(reference, false);
@@ -228,13 +228,13 @@ Chart make_chart(const Scene& scene, const ChartJob& asked, const ChartControl& 
     const std::string hash = hash_of(references, job, files);
     const std::vector<Task> tasks = plan_tasks(stage, hash, files, chart, control);
 
-    Plan plan(control);
+    ChartProgress progress(control);
     const bool work = std::ranges::any_of(tasks, [](const Task& task) { return !task.kept; });
     const double first = work ? reference_seconds(references.picture, picture_samples(job)) : 0;
-    plan.expect(first);
-    for (const Task& task : tasks) plan.expect(seconds_of(task, job));
-    render_references(stage, references, chart, files, plan, first);
-    plan.finish(first);
+    progress.expect(first);
+    for (const Task& task : tasks) progress.expect(seconds_of(task, job));
+    render_references(stage, references, chart, files, progress, first);
+    progress.finish(first);
 
     RenderPlan shown;
     if (needs_auto_exposure(scene, job.render))
@@ -247,12 +247,12 @@ Chart make_chart(const Scene& scene, const ChartJob& asked, const ChartControl& 
             chart.points.push_back(*task.kept), ++chart.kept;
         } else {
             const MeasuredPoint measured =
-                measure_point(stage, task.rung, [&](double done) { plan.show(done, seconds); });
+                measure_point(stage, task.rung, [&](double done) { progress.show(done, seconds); });
             keep_point(job.directory, measured, task.hash, display);
             chart.points.push_back(measured.point);
             if (control.remark) control.remark(line_on(measured.point));
         }
-        plan.finish(seconds);
+        progress.finish(seconds);
     }
     mark_best(chart.points);
     chart.load_after = load_average();

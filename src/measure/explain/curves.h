@@ -11,7 +11,7 @@ Interval<double> axis_of(const RayReport& report);
 // How a light shines on each step.
 std::vector<LightState> light_states(const RayReport& report, const LightOnRay& light);
 
-// The `most` brightest lights, in the story's order.
+// The `most` brightest lights, in the report's order.
 std::vector<size_t> brightest_lights(const RayReport& report, size_t most);
 
 // Luminance per meter that arrives at the eye from a source at a step.

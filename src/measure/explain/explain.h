@@ -91,7 +91,7 @@ struct ModeResult {
     bool finite = true;
 };
 
-// Relative error of the luminance of an answer's fog light: 0.1 = 10 % too bright. Infinite where there should be none.
+// Relative error of the luminance of a result's fog light: 0.1 = 10 % too bright. Infinite where there should be none.
 double difference(const ModeResult& result, const ModeResult& reference);
 
 struct RayReport {

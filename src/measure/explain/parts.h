@@ -43,7 +43,7 @@ struct LightOnSegment {
 
 LightOnSegment light_on(const RayScene& scene, const RaySegment& segment, size_t light);
 
-// Multiplies the shares of the part's steps, which start at `first_step` in the story, by the light that surfaces with
+// Multiplies the shares of the part's steps, which start at `first_step` in the report, by the light that surfaces with
 // alpha transmit, and divides on.lit accordingly.
 void add_alpha_shadows(const RayScene& scene, const RaySegment& segment, size_t first_step, const RayReport& report,
                        LightOnSegment& on, std::vector<LightAtStep>& at);

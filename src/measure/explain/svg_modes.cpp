@@ -1,4 +1,4 @@
-// The modes' answers as bars beside the reference.
+// The modes' results as bars beside the reference.
 #include "measure/explain/svg.h"
 
 #include "base/text.h"
@@ -9,7 +9,7 @@ namespace tyndall {
 using namespace ray_drawing;
 
 namespace {
-void draw_answer(const ModeResult& result, const ModeResult* reference, double y, double scale, Svg& svg) {
+void draw_result(const ModeResult& result, const ModeResult* reference, double y, double scale, Svg& svg) {
     constexpr double bars = 480; // their right end
     const double value = luminance(result.inscatter), share = value / scale;
     svg.text(left - 8, y + 12, result.mode, Anchor::end);
@@ -38,8 +38,8 @@ double draw_modes(const RayReport& report, double top, Svg& svg) {
         {560, "nits"}, {710, "error"}, {800, "through"}, {890, "valid"}, {980, "steps"}};
     for (const auto& [x, head] : heads) svg.text(x, top, head, Anchor::end, "fill='#666'");
     double y = top + 8;
-    draw_answer(report.reference, nullptr, y, scale, svg);
-    for (const ModeResult& result : report.results) draw_answer(result, &report.reference, y += 22, scale, svg);
+    draw_result(report.reference, nullptr, y, scale, svg);
+    for (const ModeResult& result : report.results) draw_result(result, &report.reference, y += 22, scale, svg);
     const double x = left + (480 - left) * exact / scale;
     svg.line(x, top + 8, x, y + 16, "#D55E00", 1.5, "4 3");
     y += 40;

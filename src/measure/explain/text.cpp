@@ -15,7 +15,7 @@ std::string surface_text(const SurfaceOnRay& surface) {
     std::string text = formatted("  %9s m  ", digits(surface.distance).c_str()) + printable(surface.name, 40);
     if (!surface.material.empty()) text += " (" + printable(surface.material, 40) + ")";
     if (surface.alpha < 1) text += ", alpha " + digits(surface.alpha);
-    return wrapped(
+    return report_lines(
         text + ": radiance " + color_text(surface.radiance) + ", " + percent(surface.share) + " of it arrives", 13);
 }
 
@@ -30,10 +30,11 @@ std::string ray_text(const RayReport& report) {
         for (const MediumOnRay& medium : report.media)
             if (medium.depth > 0)
                 media += (media.empty() ? "" : " + ") + printable(medium.name, 40) + " " + digits(medium.depth);
-        text += wrapped("  fog from " + digits(report.steps.front().low) + " to " + digits(report.steps.back().high) +
-                            " m, optical depth " + digits(report.depth) + " (" + media +
-                            "): " + percent(report.reference.transmittance) + " of the light behind it gets through",
-                        6);
+        text +=
+            report_lines("  fog from " + digits(report.steps.front().low) + " to " + digits(report.steps.back().high) +
+                             " m, optical depth " + digits(report.depth) + " (" + media +
+                             "): " + percent(report.reference.transmittance) + " of the light behind it gets through",
+                         6);
     }
     for (const SurfaceOnRay& surface : report.surfaces) text += surface_text(surface);
     if (!report.hits)
@@ -80,7 +81,7 @@ std::string stretches_text(const RayReport& report) {
             line += name_of(stretch.state);
             if (!stretch.blockers.empty()) line += " of " + printable(joined(stretch.blockers, ", "), 200);
             if (stretch.state == LightState::partial) line += ", " + percent(stretch.share) + " lit";
-            text += wrapped(line, 45);
+            text += report_lines(line, 45);
             name.clear();
         }
     }
@@ -100,7 +101,7 @@ std::string channels() { return formatted("%9s %9s %9s", "R", "G", "B"); }
 
 std::string cut(std::string text, size_t most) { return text.size() <= most ? text : text.substr(0, most - 1) + "~"; }
 
-std::string wrapped(const std::string& text, size_t indent) {
+std::string report_lines(const std::string& text, size_t indent) {
     std::string result, line;
     for (size_t start = 0; start < text.size();) {
         const size_t space = std::min(text.find(' ', start), text.size());
@@ -127,17 +128,17 @@ std::string percent(double share) {
                      value);
 }
 
-std::string difference_text(const ModeResult& answer, const ModeResult& reference) {
-    const double off = difference(answer, reference);
+std::string difference_text(const ModeResult& result, const ModeResult& reference) {
+    const double off = difference(result, reference);
     if (std::isinf(off)) return "none expected";
     const auto text = [](double value, const char* sign) {
         const double size = std::abs(100 * value);
         return formatted(size >= 100 ? "%s%.0f" : size >= 10 ? "%s%.1f" : "%s%.2f", sign, size);
     };
-    std::string result = std::abs(off) < 5e-5 ? "0.00" : text(off, off < 0 ? "-" : "+");
-    if (answer.standard_error && luminance(reference.inscatter) > 0)
-        result += " +- " + text(luminance(*answer.standard_error) / luminance(reference.inscatter), "");
-    return result + " %";
+    std::string difference = std::abs(off) < 5e-5 ? "0.00" : text(off, off < 0 ? "-" : "+");
+    if (result.standard_error && luminance(reference.inscatter) > 0)
+        difference += " +- " + text(luminance(*result.standard_error) / luminance(reference.inscatter), "");
+    return difference + " %";
 }
 
 vec3 added_by(const RayReport& report, size_t step) {
@@ -154,7 +155,7 @@ std::string title_line(const RayReport& report, const ReportTitle& title) {
 }
 
 std::string explain_text(const RayReport& report, const ReportTitle& title) {
-    std::string text = wrapped(title_line(report, title), 2);
+    std::string text = report_lines(title_line(report, title), 2);
     for (const std::string& part : {ray_text(report), lights_text(report), stretches_text(report), steps_text(report),
                                     modes_text(report), limitations_text(report)})
         if (!part.empty()) text += "\n" + part;

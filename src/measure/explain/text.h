@@ -11,9 +11,9 @@ std::string channels(); // the heading of such columns
 std::string cut(std::string text, size_t most);
 
 // Wraps text into lines of up to 100 columns; those after the first are indented.
-std::string wrapped(const std::string& text, size_t indent);
+std::string report_lines(const std::string& text, size_t indent);
 
 std::string steps_text(const RayReport& report);       // the table of steps, merged into a few rows
-std::string modes_text(const RayReport& report);       // the modes' answers beside the reference
+std::string modes_text(const RayReport& report);       // the modes' results beside the reference
 std::string limitations_text(const RayReport& report); // the modes' limitations on this ray
 }

@@ -1,4 +1,4 @@
-// The modes' answers as text.
+// The modes' results as text.
 #include "measure/explain/text.h"
 
 #include "base/error.h"
@@ -8,7 +8,7 @@
 
 namespace tyndall {
 namespace {
-std::string answer_text(const ModeResult& result, const ModeResult* reference) {
+std::string result_text(const ModeResult& result, const ModeResult* reference) {
     const std::string off = !result.finite ? "not finite" : reference ? difference_text(result, *reference) : "";
     return formatted("  %-14s %s %19s %9s %8s %8d\n", result.mode.c_str(), color_columns(result.inscatter).c_str(),
                      off.c_str(), percent(result.transmittance).c_str(), percent(result.validity).c_str(),
@@ -34,17 +34,18 @@ std::string limitations_text(const RayReport& report) {
                 all.push_back({{result.mode}, std::move(group)});
         }
     std::string text;
-    for (const Said& said : all) text += wrapped("  " + joined(said.modes, ", ") + ": " + line_of(said.group), 6);
+    for (const Said& said : all) text += report_lines("  " + joined(said.modes, ", ") + ": " + line_of(said.group), 6);
     return text.empty() ? text : "Limitations of the modes on this ray\n" + text;
 }
 
 std::string modes_text(const RayReport& report) {
     std::string text = "What each mode gives: fog light of one sample at the pixel's center, nits\n";
     text += formatted("  %-14s %s %19s %9s %8s %8s\n", "", channels().c_str(), "error", "through", "valid", "steps");
-    text += answer_text(report.reference, nullptr);
-    for (const ModeResult& result : report.results) text += answer_text(result, &report.reference);
+    text += result_text(report.reference, nullptr);
+    for (const ModeResult& result : report.results) text += result_text(result, &report.reference);
     for (const ModeResult& result : report.results)
-        if (!result.remark.empty()) text += wrapped(formatted("  %-14s ", result.mode.c_str()) + result.remark, 17);
+        if (!result.remark.empty())
+            text += report_lines(formatted("  %-14s ", result.mode.c_str()) + result.remark, 17);
     return text;
 }
 }

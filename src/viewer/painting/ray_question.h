@@ -13,14 +13,14 @@ struct RayAnswer {
     ivec2 pixel{0};
     int frame = 1;
     RayReport report;
-    bool complete = false; // includes the answers of the modes
+    bool complete = false; // includes the results of the modes
     double seconds = 0;
 };
 
 // Whether the request asks for a ray that `answer` does not fully explain.
 bool asks_for_ray(const Request& request, const RayAnswer* answer);
 
-// The next answer: first the ray itself, then the same with every mode's answer. Throws Error (internal) when
+// The next answer: first the ray itself, then the same with every mode's result. Throws Error (internal) when
 // cancelled.
 std::shared_ptr<const RayAnswer> answer_ray(const Request& request, const Snapshot& snapshot, const RayAnswer* before,
                                             std::atomic<bool>& cancel);

@@ -56,9 +56,9 @@ class Scale(ProgramTest):
     def test_columns_far_from_the_origin(self):
         moved = self.check(SOURCE / "scenes/pillars.json", {}, {(1e7, 0, -1e7): 1e-3, (1e6, 2e5, -3e6): 1e-3})
         # Places are told in the world, to the millimeter.
-        story = json.loads(run("explain", moved, "--pixel", "32,18", "--res", "64x36", "--frame", "1", "--json",
+        report = json.loads(run("explain", moved, "--pixel", "32,18", "--res", "64x36", "--frame", "1", "--json",
                                "-q").stdout)
-        for value, expected in zip(story["origin"], (1e6 - 1.6, 2e5 + 2.0, -3e6 + 9.5)):
+        for value, expected in zip(report["origin"], (1e6 - 1.6, 2e5 + 2.0, -3e6 + 9.5)):
             self.assertAlmostEqual(value, expected, delta=0.1)
         bounds = json.loads(run("info", moved, "--json").stdout)["bounds"]
         self.assertAlmostEqual(bounds["low"][1], 2e5, delta=10)

@@ -1,4 +1,4 @@
-// One ray's story against closed forms, against the reference, and against whole pictures.
+// One ray's report against closed forms, against the reference, and against whole pictures.
 #include "measure/explain/report.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
@@ -234,17 +234,17 @@ TEST(Explain, ModesAnswerAsInTheirPictures) {
     const RayReport report = told(stage.snapshot, all_modes(), axis_view(), pixel);
     ASSERT_EQ(report.results.size(), modes().size());
     FrameStats stats;
-    for (const ModeResult& answer : report.results) {
-        SCOPED_TRACE(answer.mode);
-        const Mode& mode = find_mode(answer.mode);
-        EXPECT_TRUE(answer.finite);
+    for (const ModeResult& result : report.results) {
+        SCOPED_TRACE(result.mode);
+        const Mode& mode = find_mode(result.mode);
+        EXPECT_TRUE(result.finite);
         if (is_unbiased(mode)) continue;
         const Layers layers = render_frame(mode, view, stage.snapshot, settings, {}, stats);
-        EXPECT_EQ(answer.inscatter, layers.inscatter.at(pixel.x, pixel.y));
-        EXPECT_EQ(answer.color, layers.color.at(pixel.x, pixel.y));
-        EXPECT_EQ(answer.transmittance, layers.transmittance.at(pixel.x, pixel.y));
-        EXPECT_EQ(answer.validity, layers.validity.at(pixel.x, pixel.y));
-        EXPECT_EQ(answer.image_size.x > 0, mode.surfaces == Surfaces::post);
+        EXPECT_EQ(result.inscatter, layers.inscatter.at(pixel.x, pixel.y));
+        EXPECT_EQ(result.color, layers.color.at(pixel.x, pixel.y));
+        EXPECT_EQ(result.transmittance, layers.transmittance.at(pixel.x, pixel.y));
+        EXPECT_EQ(result.validity, layers.validity.at(pixel.x, pixel.y));
+        EXPECT_EQ(result.image_size.x > 0, mode.surfaces == Surfaces::post);
     }
     const Layers truth = render_frame(find_mode("march"), view, stage.snapshot, truth_settings(settings), {}, stats);
     expect_near(report.reference.inscatter, truth.inscatter.at(pixel.x, pixel.y), 1e-6);
@@ -280,14 +280,14 @@ TEST(Explain, LimitsOfLightsThatDoNotReachTheRayAreLeftOut) {
 }
 
 TEST(Explain, DifferencesAreOfLuminance) {
-    ModeResult answer, reference;
-    reference.inscatter = vec3(2), answer.inscatter = vec3(2.5f);
-    EXPECT_NEAR(difference(answer, reference), 0.25, 1e-6);
-    EXPECT_EQ(difference_text(answer, reference), "+25.0 %");
-    answer.inscatter = reference.inscatter = vec3(0);
-    EXPECT_EQ(difference(answer, reference), 0);
-    answer.inscatter = vec3(1);
-    EXPECT_TRUE(std::isinf(difference(answer, reference)));
+    ModeResult result, reference;
+    reference.inscatter = vec3(2), result.inscatter = vec3(2.5f);
+    EXPECT_NEAR(difference(result, reference), 0.25, 1e-6);
+    EXPECT_EQ(difference_text(result, reference), "+25.0 %");
+    result.inscatter = reference.inscatter = vec3(0);
+    EXPECT_EQ(difference(result, reference), 0);
+    result.inscatter = vec3(1);
+    EXPECT_TRUE(std::isinf(difference(result, reference)));
 }
 
 TEST(Explain, ReportsStayWithinTheirColumns) {
