@@ -1,4 +1,4 @@
-"""Draws what runs of the proving ground found: the target error against the error achieved, one dot per promise. Writes
+"""Draws what runs of the proving ground found: the target error against the error achieved, one dot per target. Writes
 the figures beside the drawing, as CSV.
 
     tests/proving/run.py --seeds 5001-5200 -o out/proving
@@ -39,7 +39,7 @@ def drawing(rows):
         left = LEFT + column * step
         y = place_y(target)
         parts += [f'<line x1="{left + 10:.1f}" x2="{left + step - 10:.1f}" y1="{y:.1f}" y2="{y:.1f}" stroke="#222" stroke-width="2"/>',
-                  text(left + step / 2, HEIGHT - BOTTOM + 20, f"{100 * target:g} % asked for")]
+                  text(left + step / 2, HEIGHT - BOTTOM + 20, f"target {100 * target:g} %")]
         for row in (row for row in rows if row["asked"] == target):
             side = 0.3 if row["mode"] == "march" else 0.7
             x = left + step * (side + chance.uniform(-0.15, 0.15))
@@ -50,16 +50,16 @@ def drawing(rows):
     for i, (mode, color) in enumerate(COLORS.items()):
         x = LEFT + 14 + 90 * i
         parts += [f'<circle cx="{x}" cy="{TOP - 12}" r="4" fill="{color}"/>', text(x + 8, TOP - 8, mode, "start")]
-    parts.append(text(WIDTH - 20, TOP - 8, "error achieved; line: error asked for; hollow: refused (exit code 1)", "end"))
+    parts.append(text(WIDTH - 20, TOP - 8, "error achieved; line: target; hollow: exit code 1", "end"))
     return "\n".join([*parts, "</svg>", ""])
 
 
-COLUMNS = {"seed": "", "family": "", "redrawn": "", "asked": "g", "mode": "", "chosen": "", "exit": "", "promised": ".4f", "bound": ".4f",
+COLUMNS = {"seed": "", "family": "", "redrawn": "", "asked": "g", "mode": "", "chosen": "", "exit": "", "stated": ".4f", "bound": ".4f",
            "achieved": ".4f", "samples": "", "seconds": ".2f", "processor": ".2f", "forecast": ".2f", "took": ".2f"}
 
 
 def table(rows):
-    """One row per promise: what was asked for, stated and achieved, and the time it took."""
+    """One row per target: the target, the error stated and achieved, and the time it took."""
     for row in sorted(rows, key=lambda row: (row["seed"], -row["asked"], row["mode"] != "march")):
         yield ["" if row.get(name) is None else format(row[name], form) for name, form in COLUMNS.items()]
 

@@ -6,7 +6,7 @@ Every seed has one mode, with single scattering or with all orders, and is plann
 times: by three numbers of samples, and by a target. What merge says is held against exact single scattering, or against path
 tracing where there are all orders or `path` renders (it alone shadows ambient light).
 Prints a row a frame and what they add up to, by mode and number of groups; writes DIR/bounds.json. Ends with 1 when more
-than one bound in twenty is false, or the median bound is more than twice the error."""
+than one bound in twenty is invalid, or the median bound is more than twice the error."""
 import argparse
 import concurrent.futures
 import json
@@ -116,7 +116,7 @@ def prove(seed, options):
     return [row | {"seconds": time.monotonic() - start} for row in rows]
 
 
-def is_true(row):
+def is_valid(row):
     return row["achieved"] <= SLACK * row["bound"] + ROUNDING
 
 
@@ -125,12 +125,12 @@ def line(row):
     if "refused" in row:
         return f"{start} {row['refused']}"
     return (f"{start} {row['groups']} groups {row['samples']:4d} samples said {row['said']:.4f} at most {row['bound']:.4f} is "
-            f"{row['achieved']:.4f}" + ("" if is_true(row) else "  FALSE"))
+            f"{row['achieved']:.4f}" + ("" if is_valid(row) else "  BOUND INVALID"))
 
 
 def share(rows):
-    """Number, share of true ones, and median bound by error."""
-    return {"frames": len(rows), "true": sum(map(is_true, rows)),
+    """Number, number of valid bounds, and median bound by error."""
+    return {"frames": len(rows), "valid": sum(map(is_valid, rows)),
             "bound_by_error": round(float(np.median([row["bound"] / max(row["achieved"], 1e-9) for row in rows])), 3)}
 
 
@@ -164,8 +164,8 @@ def main():
             (options.output / "bounds.json").write_text(json.dumps(rows, indent=1))
     result = summary(rows)
     print(json.dumps(result, indent=1))
-    told = result.get("all", {"frames": 0, "true": 0, "bound_by_error": 0})
-    sys.exit(0 if told["frames"] and told["true"] >= 0.95 * told["frames"] and told["bound_by_error"] <= 2 else 1)
+    told = result.get("all", {"frames": 0, "valid": 0, "bound_by_error": 0})
+    sys.exit(0 if told["frames"] and told["valid"] >= 0.95 * told["frames"] and told["bound_by_error"] <= 2 else 1)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Deliberate faults in the code that promises errors and times, and in that of lights, media and motion, one after the
+"""Deliberate faults in the code behind targets, bounds and budgets, and in that of lights, media and motion, one after the
 other: a test or the proving ground must find each of them.
 
     mutations.py -o FOLDER [--only NAME,...] [--seeds 4,18,27,42,55,69] [--truths DIR]

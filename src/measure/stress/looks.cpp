@@ -1,4 +1,4 @@
-// Artistic modes: radial blur and beam cards. They promise no light transport, but must behave well.
+// Artistic modes: radial blur and beam cards. They do not simulate light transport, but must behave well.
 #include "measure/stress/trial.h"
 #include "modes/billboard/limitations.h"
 #include "modes/radial_blur/limitations.h"
@@ -14,7 +14,7 @@
 namespace tyndall {
 namespace {
 const Box cube{vec3(-8), vec3(8)};
-// Radial blur promises no light at all.
+// Radial blur need not be right about any light.
 const std::vector<Excuse> no_light{{&limitation::screen_space, infinity}};
 const std::vector<Excuse> faded{{&limitation::card_edge_on}, {&limitation::camera_in_card}};
 

@@ -25,8 +25,8 @@ std::vector<std::string_view> pieces(std::string_view text, char separator) {
     return result;
 }
 
-// Largest relative RMSE that keeps a mode's promise at quality preview.
-double promised(const Mode& mode) {
+// Largest relative RMSE that a mode may have at quality preview.
+double allowed_rmse(const Mode& mode) {
     switch (mode.accuracy) {
     case Accuracy::homogeneous:
     case Accuracy::multiple_scattering:
@@ -40,7 +40,7 @@ bool names(std::string_view list, std::string_view name) { return std::ranges::c
 
 double allowed_to(const Mode* mode, const StressMeasure& measure) {
     if (mode && names(measure.exact_modes, mode->name)) return measure.exact;
-    return measure.allowed >= 0 || !mode ? measure.allowed : promised(*mode);
+    return measure.allowed >= 0 || !mode ? measure.allowed : allowed_rmse(*mode);
 }
 
 // The largest error that a limitation excuses; below 0: none.

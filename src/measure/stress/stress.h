@@ -21,7 +21,7 @@ struct Trial; // both in measure/stress/trial.h
 
 // How an error is measured, and how large it may be.
 struct StressMeasure {
-    double allowed = -1; // below 0: what the mode promises at preview
+    double allowed = -1; // below 0: what the mode may have at preview
     std::string_view criterion = "relative RMSE of image or fog light against the exact march";
     double (*error)(Trial& trial) = nullptr; // null = by the criterion above
     double exact = -1;                       // allowed to modes that are exact here
