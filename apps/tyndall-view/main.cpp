@@ -83,10 +83,8 @@ ViewerOptions read_options(const Args& args) {
         state.max_samples = static_cast<int>(integer_option("--samples", args.samples, 1, 1 << 20));
     if (!args.seed.empty()) state.seed = static_cast<uint32_t>(integer_option("--seed", args.seed, 0, UINT32_MAX));
     if (!args.rate.empty()) state.wanted_rate = number_option("--fps", args.rate, 1, 1000);
-    constexpr LightUnits units[] = {LightUnits::spec, LightUnits::unitless, LightUnits::raw};
-    options.load.light_units = units[choice_among("--light-units", args.units, {"spec", "unitless", "raw"})];
-    constexpr MissingFrame missing[] = {MissingFrame::error, MissingFrame::hold, MissingFrame::skip};
-    state.missing = missing[choice_among("--missing", args.missing, {"error", "hold", "skip"})];
+    options.load.light_units = static_cast<LightUnits>(choice_among("--light-units", args.units, light_unit_names));
+    state.missing = static_cast<MissingFrame>(choice_among("--missing", args.missing, missing_frame_names));
     options.stats = args.stats;
     set_thread_count(args.threads.empty() ? 0 : static_cast<int>(integer_option("--threads", args.threads, 1, 1024)));
     options.isa = select_isa("auto");
