@@ -60,9 +60,6 @@ void draw_job(const JobStatus& job, const Act& act);
 // The technique's own settings and those it shares, as sliders.
 void draw_settings(ViewState& state, PanelState& memory, const Act& act);
 
-// Mode, size, samples, time and the mode's accuracy in one line.
-std::string status_line(const ViewState& state, const ShownPicture& picture);
-
 // Asks before unsaved edits are lost or a job is ended.
 void draw_question(const ViewState& state, const PanelResources& resources, EditState& edits, const Act& act);
 
