@@ -50,26 +50,16 @@ template<class Visit> void for_emitting_materials(const Snapshot& snapshot, cons
 
 bool has_scattering_fog(const Snapshot& snapshot) { return std::ranges::any_of(snapshot.media, scatters_light); }
 
-// Whether the scene has surfaces or scattering fog for light to fall on.
-bool can_be_lit(const Snapshot& snapshot) {
-    return (snapshot.occluders && !snapshot.occluders->empty()) || has_scattering_fog(snapshot);
-}
 }
 
-void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations) {
-    lights_nothing = lights_nothing && can_be_lit(snapshot);
-    for (const Medium& medium : snapshot.media) {
-        if (!has_emission(medium)) continue;
-        const auto add = [&](Severity severity, const LimitationKind& kind, std::array<double, 2> amounts) {
-            limitations.push_back({severity, &kind, Subject::medium, medium.name, amounts});
-        };
-        const auto& field = medium.optics.emission.field;
-        if (field && field->out_of_gamut > 0)
-            add(Severity::info, limitation::out_of_gamut,
-                {100 * static_cast<double>(field->out_of_gamut), lowest_in_gamut()});
-        if (lights_nothing && !field)
-            add(Severity::degraded, limitation::unscattered_emission, {max_nits(medium, snapshot.extent)});
-    }
+void add_out_of_gamut(const Snapshot& snapshot, Limitations& limitations) {
+    for (const Medium& medium : snapshot.media)
+        if (const auto& field = medium.optics.emission.field; field && has_emission(medium) && field->out_of_gamut > 0)
+            limitations.push_back({Severity::info,
+                                   &limitation::out_of_gamut,
+                                   Subject::medium,
+                                   medium.name,
+                                   {100 * static_cast<double>(field->out_of_gamut), lowest_in_gamut()}});
 }
 
 namespace {
@@ -160,7 +150,7 @@ namespace {
 // Relative error of the light that leaves a fire's own smoke when lamps inside stand for the fire: RMS over the axes.
 double error_behind_smoke(const Snapshot& snapshot, std::span<const Light> lamps) {
     constexpr uint32_t points = 128;
-    const auto fire = emissive_bricks(snapshot);
+    const auto fire = emissive_bricks(snapshot, Emitting::as_lamps);
     if (!fire) return 0;
     double squares = 0, sum = 0;
     for (const vec3& direction :
@@ -183,6 +173,16 @@ double error_behind_smoke(const Snapshot& snapshot, std::span<const Light> lamps
 }
 }
 
+namespace {
+// Of the light of endless or thick fog, the part that it scatters once: that of the highest albedo.
+double scattered_share(const Snapshot& snapshot) {
+    double albedo = 0;
+    for (const Medium& medium : snapshot.media)
+        if (scatters_light(medium)) albedo = std::max(albedo, double{max_component(medium.optics.albedo)});
+    return albedo / (1 + albedo);
+}
+}
+
 void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
     constexpr double tolerated = 0.1;
     if (!has_scattering_fog(snapshot)) return;
@@ -197,9 +197,14 @@ void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
     if (error_behind_smoke(snapshot, lamps) > tolerated)
         reach = std::max(reach, double{snapshot.extent}), severity = Severity::wrong;
     for (const Medium& medium : snapshot.media)
-        if (!lamps.empty() && has_emission(medium) && only_emits(medium.optics))
+        if (has_emission(medium) && !emits_as_lamps(medium)) {
+            const double share = scattered_share(snapshot);
+            limitations.push_back(
+                {severity_of(share), &limitation::unscattered_emission, Subject::medium, medium.name, {100 * share}});
+        } else if (has_emission(medium) && !lamps.empty()) {
             limitations.push_back(
                 {severity, &limitation::lamps_for_fire, Subject::medium, medium.name, {reach, double(lamps.size())}});
+        }
 }
 
 void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {

@@ -17,7 +17,7 @@ inline constexpr LimitationKind out_of_gamut{
     "out_of_gamut", "{}% of its light, below {n} K, is outside the Rec.709 gamut: clamped to the reddest color"};
 inline constexpr LimitationKind unscattered_emission{
     "unscattered_emission",
-    "its emission (at most {} nits) is visible but illuminates nothing; path includes its light"};
+    "its emission illuminates surfaces but no fog: up to {}% of its light is missing; march and path include it"};
 inline constexpr LimitationKind lamps_for_fire{
     "lamps_for_fire", "its light in fog has an error above 10% within {} m of the {n} lamps that approximate it"};
 inline constexpr LimitationKind lamps_for_surfaces{
@@ -32,12 +32,11 @@ inline constexpr LimitationKind emission_left_out{"emission_left_out", "its emis
 inline constexpr LimitationKind ambient_left_out{"ambient_left_out", "ambient light is ignored in fog: {} nits"};
 }
 
-// Reports emission of media outside the Rec.709 gamut and, with `lights_nothing`, emission without a grid, which is
-// visible but illuminates nothing.
-void add_emission(const Snapshot& snapshot, bool lights_nothing, Limitations& limitations);
+// Reports emission of media outside the Rec.709 gamut.
+void add_out_of_gamut(const Snapshot& snapshot, Limitations& limitations);
 
-// Reports fire approximated by lamps. `wrong` where fog scatters much of their light within the distance at which they
-// are inaccurate.
+// Reports fire and thin fog that emits, which lamps approximate: `wrong` where fog scatters much of their light within
+// the distance at which they are inaccurate. Reports unbounded and thick fog that emits, for which there are none.
 void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations);
 
 // Reports emissive surfaces approximated by lamps; `wrong` as in add_lamps_for_faces().

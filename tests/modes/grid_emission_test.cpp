@@ -267,8 +267,8 @@ TEST(GridEmission, AimingAtAFlameChangesNoMean) {
         EmissiveBricks dark; // aims at a corner without light
         dark.fields = take_fields(unaimed->snapshot, {}, {}).fields;
         dark.bricks = {{0, 0}}, dark.cumulative = {1};
-        dark.pdfs.resize(dark.fields.size());
-        for (auto& field : dark.pdfs) field.per_volume.assign(1 << 20, 0), field.line_scale = 1;
+        for (const Medium& field : dark.fields)
+            dark.sampling.push_back({field.density.bricks, std::vector<float>(1 << 20), 1});
         unaimed->fire = std::make_shared<const EmissiveBricks>(std::move(dark));
         const RayEstimate by_chance = estimate_ray(
             [unaimed](const RayBatch& batch, std::span<Scatter> results) { trace_paths(*unaimed, batch, results); },

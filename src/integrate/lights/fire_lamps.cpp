@@ -65,7 +65,7 @@ double split_error(const FirePart& part) { return part.weight * (part.spread.x +
 }
 
 std::vector<Light> fire_lamps(const Snapshot& snapshot) {
-    const auto fire = emissive_bricks(snapshot);
+    const auto fire = emissive_bricks(snapshot, Emitting::as_lamps);
     std::vector<FireSample> places = fire ? fire_samples(*fire) : std::vector<FireSample>{};
     if (places.empty()) return {};
     std::vector<FirePart> parts{part_of(std::move(places))};

@@ -116,7 +116,7 @@ void append_ray(const EmissiveBricks& fire, const ScatteringFog& fog, const RayB
 
 void append_fire_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
                        std::vector<PathLight>& lights) {
-    std::shared_ptr<const EmissiveBricks> fire = emissive_bricks(snapshot);
+    std::shared_ptr<const EmissiveBricks> fire = emissive_bricks(snapshot, Emitting::all);
     if (!fire) return;
     const bool shadowed = shadows && snapshot.occluders && !snapshot.occluders->empty();
     lights.push_back({shadowed ? snapshot.occluders : nullptr, OtherLight::emission,

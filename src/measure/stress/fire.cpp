@@ -10,15 +10,17 @@
 #include "volume/medium.h"
 #include "volume/phase.h"
 
+#include <algorithm>
+
 namespace tyndall {
 namespace {
 // Detail of smoke within a step or cell counts as in grids (0.9, data.cpp), one sample per step near a flame as near a
 // lamp (2, lamps.cpp).
-const std::vector<Excuse> excuses{{&limitation::lamps_for_fire},        {&limitation::drawn_as_homogeneous},
-                                  {&limitation::mean_emission_color},   {&limitation::long_steps, 0.9},
-                                  {&limitation::light_grid_cells, 0.9}, {&limitation::deep_steps, 0.9},
-                                  {&limitation::deep_froxels, 0.9},     {&limitation::coarse_shafts},
-                                  {&limitation::hard_shadows, 0.5},     {&limitation::few_steps_for_glow, 2}};
+const std::vector<Excuse> excuses{
+    {&limitation::lamps_for_fire},      {&limitation::drawn_as_homogeneous}, {&limitation::unscattered_emission, 2},
+    {&limitation::mean_emission_color}, {&limitation::long_steps, 0.9},      {&limitation::light_grid_cells, 0.9},
+    {&limitation::deep_steps, 0.9},     {&limitation::deep_froxels, 0.9},    {&limitation::coarse_shafts},
+    {&limitation::hard_shadows, 0.5},   {&limitation::few_steps_for_glow, 2}};
 const Camera beside = camera_from({0.4f, 0.7f, 3.5f}, {0, 0.6f, 0});
 
 StressScene fire_scene(const Flame& flame, Camera camera = beside, Medium haze = thin_haze(),
@@ -62,6 +64,27 @@ StressScene in_droplets(double g) {
     return fire_scene({}, beside, thin_haze(0.1f, forward_phase(static_cast<float>(g))));
 }
 
+// A box of fog that emits, 1 m wide, without and with other fog around it.
+StressScene emitting_box(double extinction, std::vector<Medium> around) {
+    Medium fog = thin_haze(static_cast<float>(extinction));
+    fog.density.bounds = fog.world_bounds = {{-0.5f, 0.1f, -0.5f}, {0.5f, 1.1f, 0.5f}};
+    fog.optics.emission.radiance = vec3(2, 3, 1) * static_cast<float>(std::max(extinction, 0.5));
+    around.push_back(std::move(fog));
+    return authored(std::move(around), {}, beside);
+}
+StressScene emitting_fog(double extinction) { return emitting_box(extinction, {}); }
+StressScene emitting_in_haze(double extinction) {
+    return emitting_box(0.2, {thin_haze(static_cast<float>(extinction))});
+}
+
+// Endless fog that emits.
+StressScene emitting_haze(double albedo) {
+    Medium fog = thin_haze();
+    fog.density.bounds = fog.world_bounds = everywhere();
+    fog.optics.albedo = vec3(static_cast<float>(albedo)), fog.optics.emission.radiance = vec3(0.02f);
+    return authored({std::move(fog)}, {}, beside, {box_of({-0.3f, 0, -0.3f}, {0.3f, 1, 0.3f}, 0)}, {lambert(vec3(0))});
+}
+
 StressScene in_a_row(double count) {
     std::vector<Medium> media{thin_haze()};
     const int n = static_cast<int>(count);
@@ -95,6 +118,12 @@ std::vector<StressCase> stress_fire() {
                    {600, 1000, 1500, 2000, 3000}, Claim::physical, excuses, of_temperature, usual),
         StressCase("fire-in-droplets", group, "forward-scattering haze around a fire", "g", "", {0, 0.6, 0.9},
                    Claim::physical, excuses, in_droplets, usual),
+        StressCase("emitting-fog", group, "fog whose emission follows its density gets thick", "extinction", "1/m",
+                   {0.1, 1, 10}, Claim::physical, excuses, emitting_fog, usual),
+        StressCase("emitting-fog-in-haze", group, "the fog around it gets thick", "extinction", "1/m", {0.02, 0.2, 1},
+                   Claim::physical, excuses, emitting_in_haze, usual),
+        StressCase("emitting-haze", group, "endless fog that emits scatters more of its light", "albedo", "",
+                   {0, 0.5, 0.95}, Claim::physical, excuses, emitting_haze, usual),
         StressCase("many-fires", group, "several fires at once", "fires", "", {1, 3, 8}, Claim::physical, excuses,
                    in_a_row, usual),
     };

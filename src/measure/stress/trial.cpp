@@ -39,14 +39,15 @@ uint64_t non_finite_in(const Image<vec3>& image) {
 // Whether every image of the scene is randomly sampled, over the lens or within the shutter interval.
 bool is_blurred(const StressScene& scene) { return scene.view.camera.lens || scene.view.shutter; }
 
-// Whether the scene has light that a march samples randomly: environment, emissive surfaces, area lights or fire.
+// Whether the scene has light that a march samples randomly: environment, emissive surfaces, area lights or fog.
 bool has_sampled_light(const Snapshot& snapshot) {
     const bool glowing = snapshot.scene && std::ranges::any_of(snapshot.scene->materials, [](const Material& material) {
                              return max_component(material.emission) > 0;
                          });
     return snapshot.environment || glowing ||
            std::ranges::any_of(snapshot.lights, [](const Light& light) { return light.area != nullptr; }) ||
-           std::ranges::any_of(snapshot.media, [](const Medium& medium) { return only_emits(medium.optics); });
+           std::ranges::any_of(snapshot.media,
+                               [](const Medium& medium) { return max_component(medium.optics.emission.radiance) > 0; });
 }
 
 // Whether an image's only error is noise: a march samples soft lights randomly, as path tracing does, and several modes

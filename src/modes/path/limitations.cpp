@@ -13,7 +13,7 @@ Limitations path_limitations(const View& view, const Snapshot& snapshot, const S
     for (const Medium& medium : snapshot.media)
         if (!is_finite(medium.world_bounds.size()) && max_component(medium.optics.albedo) > hardly_absorbing)
             limitations.push_back({Severity::info, &limitation::long_paths, Subject::medium, medium.name});
-    if (settings.terms.emission) add_emission(snapshot, false, limitations);
+    if (settings.terms.emission) add_out_of_gamut(snapshot, limitations);
     if (settings.path.orders < all_orders)
         limitations.push_back({Severity::info,
                                &limitation::orders_left_out,

@@ -35,7 +35,7 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     tracer->settings = settings.path, tracer->surfaces_emit = settings.terms.emission;
     tracer->camera = view.camera, tracer->size = view.size;
     if (tracer->surfaces_emit) tracer->emitters = emissive_triangles(tracer->snapshot);
-    tracer->fire = emissive_bricks(tracer->snapshot);
+    tracer->fire = emissive_bricks(tracer->snapshot, Emitting::grids);
     take_fields(tracer->snapshot, settings.style, view.camera);
     tracer->finds_sky = finds_sky(tracer->snapshot);
     if (std::ranges::any_of(tracer->snapshot.lights, [](const Light& light) { return light.area != nullptr; }))

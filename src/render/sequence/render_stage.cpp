@@ -23,14 +23,16 @@ double seconds_to_write(const RenderRequest& request, const View& view) {
     return 0.01 + pixels * (request.png ? 1e-6 : 5e-7);
 }
 
-// Seconds until the next frame has to be rendered; 0 if there is no limit. Includes what earlier frames left over;
-// those that were kept add the time they took.
-double seconds_left(const Pipeline& pipeline, const View& view) {
+// Seconds for this frame; 0 if there is no limit. The frames ahead share alike what earlier ones left over or took too
+// much, so that their noise does not alternate; with --resume any of them may be kept, and this frame takes it alone.
+// Finished frames that it skips add the time they took.
+double seconds_left(const Pipeline& pipeline, const FrameJob& work) {
     const RenderRequest& request = pipeline.request;
     if (request.time_budget == 0) return 0;
-    const double end = request.started + request.time_budget * (pipeline.rendered + 1) + pipeline.skipped_seconds;
+    const double ahead = request.resume ? 1 : static_cast<double>(request.frames.size() - work.index);
+    const double end = request.started + request.time_budget * (pipeline.rendered + ahead) + pipeline.skipped_seconds;
     constexpr double safe = 0.96; // margin for delays of the process
-    return std::max(safe * (end - steady_seconds() - seconds_to_write(request, view)), 1e-3);
+    return std::max(safe * (end - steady_seconds() - seconds_to_write(request, work.view)) / ahead, 1e-3);
 }
 
 // Runs the mode on the frames before this one, so that a frame depends only on the scene and its number. Before the
@@ -118,7 +120,7 @@ void render(Pipeline& pipeline, FrameJob& work) {
         History history;
         if (request.history > 0) warm_up(pipeline, work, history), options.history = &history;
         const Goal goal{request.target_error,
-                        seconds_left(pipeline, work.view),
+                        seconds_left(pipeline, work),
                         request.quality,
                         {},
                         work.index == 0 ? plan.choice : nullptr,

@@ -66,7 +66,9 @@ void add_surfaces(const EmissiveTriangles& emissive, const Snapshot& snapshot, s
 }
 }
 
-Emitters emitters_of(const Snapshot& snapshot) { return {emissive_bricks(snapshot), emissive_triangles(snapshot)}; }
+Emitters emitters_of(const Snapshot& snapshot) {
+    return {emissive_bricks(snapshot, Emitting::all), emissive_triangles(snapshot)};
+}
 
 void add_emitted_light(const Emitters& emitters, const Snapshot& snapshot, std::span<const SurfacePoint> points,
                        std::span<const vec2> u, std::span<vec3> radiance) {

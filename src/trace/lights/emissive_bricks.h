@@ -1,5 +1,5 @@
-// Importance sampling of fog that emits by grids: points by the power of its bricks, and along lines by the brightness
-// of their cells.
+// Importance sampling of fog that emits: points by the power of its bricks, and along lines by the brightness of their
+// cells. Fog without bricks is sampled by the cells of a box around it.
 #pragma once
 #include "volume/medium.h"
 
@@ -13,21 +13,29 @@ struct Snapshot;
 struct EmissiveBricks {
     struct Brick {
         uint32_t medium = 0; // index into `fields`
-        uint32_t cell = 0;   // index into its BrickPool::index
+        uint32_t cell = 0;   // index into FieldSampling::bricks->index
     };
-    // Pdfs of sampling a field.
-    struct FieldPdfs {
-        std::vector<float> per_volume; // of the points of each cell, 1/m³
-        float line_scale = 0;          // factor from a brick's maximum to the pdf along a line, 1/m
+    struct FieldSampling {
+        std::shared_ptr<const BrickPool> bricks; // the medium's own, or one around its bounds
+        std::vector<float> per_volume;           // pdf of the points of each cell, 1/m³
+        float line_scale = 0;                    // factor from a brick's maximum to the pdf along a line, 1/m
     };
-    std::vector<Medium> fields;     // media that only emit
-    std::vector<Brick> bricks;      // those that emit
-    std::vector<double> cumulative; // probability of the bricks up to and including each
-    std::vector<FieldPdfs> pdfs;
+    std::vector<Medium> fields;          // media that emit
+    std::vector<Brick> bricks;           // those that emit
+    std::vector<double> cumulative;      // probability of the bricks up to and including each
+    std::vector<FieldSampling> sampling; // of each field
 };
 
-// The emission of a snapshot's media that only emit; null if there is none. Cached while they do not change.
-std::shared_ptr<const EmissiveBricks> emissive_bricks(const Snapshot& snapshot);
+// Which media: those that only emit; those that a few lamps may approximate; or all.
+enum class Emitting { grids, as_lamps, all };
+
+// Whether lamps may approximate a medium that emits: if it only emits, or is bounded and so thin that its light leaves
+// it.
+bool emits_as_lamps(const Medium& medium);
+
+// The emission of a snapshot's media; null if there is none. Cached while they do not change. Of unbounded fog, the
+// part near the scene: beyond, less than 1e-4 of its light arrives.
+std::shared_ptr<const EmissiveBricks> emissive_bricks(const Snapshot& snapshot, Emitting which);
 
 // An emitting point and the two pdfs it is sampled with: by volume, and along a line through it.
 struct EmissionSample {
