@@ -45,7 +45,7 @@ bool has_emission(const Medium& medium) { return max_component(medium.optics.emi
 template<class Visit> void for_emitting_materials(const Snapshot& snapshot, const Visit& visit) {
     if (!snapshot.scene) return;
     for (const Material& material : snapshot.scene->materials)
-        if (max_component(material.emission) > 0) visit(material);
+        if (can_emit(material)) visit(material);
 }
 
 bool has_scattering_fog(const Snapshot& snapshot) { return std::ranges::any_of(snapshot.media, scatters_light); }
@@ -207,14 +207,6 @@ void add_lamps_for_fire(const Snapshot& snapshot, Limitations& limitations) {
         }
 }
 
-void add_dark_emission(const Snapshot& snapshot, Limitations& limitations) {
-    for_emitting_materials(snapshot, [&](const Material& material) {
-        if (material.alpha_mode != AlphaMode::opaque)
-            limitations.push_back(
-                {Severity::info, &limitation::emission_lights_nothing, Subject::material, material.name});
-    });
-}
-
 void add_lamps_for_surfaces(const View& view, const Snapshot& snapshot, Limitations& limitations) {
     if (!has_scattering_fog(snapshot)) return;
     const auto found = mesh_lamps(snapshot);
@@ -223,12 +215,11 @@ void add_lamps_for_surfaces(const View& view, const Snapshot& snapshot, Limitati
         return severity_within(view, snapshot, lamp.position, found->reach) == Severity::wrong;
     });
     for_emitting_materials(snapshot, [&](const Material& material) {
-        if (material.alpha_mode == AlphaMode::opaque)
-            limitations.push_back({wrong ? Severity::wrong : Severity::degraded,
-                                   &limitation::lamps_for_surfaces,
-                                   Subject::material,
-                                   material.name,
-                                   {found->reach, double(found->lamps.size())}});
+        limitations.push_back({wrong ? Severity::wrong : Severity::degraded,
+                               &limitation::lamps_for_surfaces,
+                               Subject::material,
+                               material.name,
+                               {found->reach, double(found->lamps.size())}});
     });
 }
 
@@ -243,12 +234,10 @@ void add_left_out_light(const Snapshot& snapshot, bool surfaces_emit, Limitation
             add(limitation::emission_left_out, Subject::medium, medium.name, max_nits(medium, snapshot.extent));
     if (max_component(snapshot.ambient) > 0 && has_scattering_fog(snapshot))
         add(limitation::ambient_left_out, Subject::scene, {}, luminance(snapshot.ambient));
-    if (surfaces_emit) add_dark_emission(snapshot, limitations);
     if (surfaces_emit && has_scattering_fog(snapshot))
         for_emitting_materials(snapshot, [&](const Material& material) {
-            if (material.alpha_mode == AlphaMode::opaque)
-                limitations.push_back(
-                    {Severity::wrong, &limitation::emission_lights_no_fog, Subject::material, material.name});
+            limitations.push_back(
+                {Severity::wrong, &limitation::emission_lights_no_fog, Subject::material, material.name});
         });
     if (const double nits = nits_in_fog(snapshot); nits > 0)
         add(limitation::environment_left_out, Subject::light, snapshot.environment->name, nits);

@@ -23,8 +23,6 @@ inline constexpr LimitationKind lamps_for_fire{
 inline constexpr LimitationKind lamps_for_surfaces{
     "lamps_for_surfaces",
     "its light in fog has an error above 10% within {} m of the {n} lamps that approximate emissive surfaces"};
-inline constexpr LimitationKind emission_lights_nothing{
-    "emission_lights_nothing", "emission of MASK and BLEND surfaces is visible but illuminates nothing else"};
 inline constexpr LimitationKind emission_lights_no_fog{"emission_lights_no_fog",
                                                        "its emission illuminates surfaces, but is ignored in fog"};
 inline constexpr LimitationKind fire_left_out{"fire_left_out", "its fire is ignored: {} lumens"};
@@ -48,9 +46,6 @@ void add_mean_environment(const View& view, const Snapshot& snapshot, Limitation
 // Reports area lights (rectangles, disks, spheres) approximated by lamps. `wrong` where fog scatters much of their
 // light within the distance at which they are inaccurate, or where that region covers much of the image.
 void add_lamps_for_faces(const View& view, const Snapshot& snapshot, Limitations& limitations);
-
-// Reports materials whose emission illuminates nothing.
-void add_dark_emission(const Snapshot& snapshot, Limitations& limitations);
 
 // Reports what is ignored in fog where only lamps illuminate it: media and surfaces that emit, ambient light and an
 // environment.

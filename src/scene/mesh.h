@@ -2,6 +2,7 @@
 #pragma once
 #include "base/image.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -30,6 +31,18 @@ struct Material {
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;
 };
+
+// Opacity at an alpha: 1 for opaque materials, 0 or 1 for masks.
+inline float opacity_at(const Material& material, float alpha) {
+    if (material.alpha_mode == AlphaMode::opaque) return 1;
+    if (material.alpha_mode == AlphaMode::mask) return alpha >= material.alpha_cutoff ? 1.0f : 0.0f;
+    return std::clamp(alpha, 0.0f, 1.0f);
+}
+
+// Whether it emits light, where textures and vertices do not prevent it.
+inline bool can_emit(const Material& material) {
+    return max_component(material.emission) > 0 && opacity_at(material, material.alpha) > 0;
+}
 
 // Offsets added to a mesh's vertices, times a weight; empty = none.
 struct MorphTarget {

@@ -50,6 +50,27 @@ TEST(MeshLamps, SquareHasItsCandelaInEveryDirection) {
     }
 }
 
+// Half of the light where half of it gets through, and that of the half that a mask leaves, from its middle.
+TEST(MeshLamps, AlphaTakesItsShareOfTheCandela) {
+    for (const bool mask : {false, true}) {
+        TestScene stage = stage_with({square()});
+        Texture texture;
+        texture.nearest = true, texture.texels = Image<vec4>(ivec2(2, 1), vec4(1));
+        if (mask) texture.texels.at(0, 0).w = 0;
+        Material& lamp = stage.scene->materials[1];
+        lamp.alpha_mode = mask ? AlphaMode::mask : AlphaMode::blend, lamp.alpha = mask ? 1 : 0.5f;
+        lamp.base_texture = 0, stage.scene->textures = {texture};
+        add_surfaces(*stage.scene, stage.snapshot);
+        const auto found = mesh_lamps(stage.snapshot);
+        ASSERT_EQ(found->lamps.size(), 1u);
+        EXPECT_LT(glm::distance(found->lamps[0].position, {mask ? 0.25f : 0.0f, 0, 0}), 0.02f);
+        for (const dvec3& way : some_directions) {
+            const dvec3 direction = glm::normalize(way);
+            EXPECT_NEAR(candela(found->lamps[0], direction).y, 1.5 * std::abs(direction.y), 0.03) << way.y;
+        }
+    }
+}
+
 // What leaves a closed mesh is its area as seen from there: the light inside stays inside.
 TEST(MeshLamps, BoxHasItsCandelaInEveryDirection) {
     const auto found = mesh_lamps(stage_with({box_of({-0.5f, -0.25f, -0.1f}, {0.5f, 0.25f, 0.1f})}).snapshot);

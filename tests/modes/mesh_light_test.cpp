@@ -1,4 +1,5 @@
-// Light of surfaces that glow, in fog and on other surfaces: quadrature, march against paths, what others say of it.
+// Light of surfaces that emitter, opaque or not, in fog and on other surfaces: quadrature, march against paths, what
+// others say of it.
 #include "base/gauss_legendre.h"
 #include "base/random.h"
 #include "modes/area_light_limitations.h"
@@ -20,20 +21,35 @@ namespace {
 constexpr double sigmas = 4.5;
 const vec3 radiance(2, 3, 1);
 
+// What of the square glows, from this share of its width on, and how much of that the eye sees of it.
+struct Emitter {
+    const char* name = "opaque";
+    AlphaMode mode = AlphaMode::opaque;
+    float alpha = 1, start = 0;
+};
+constexpr Emitter with_alpha[] = {{"blend", AlphaMode::blend, 0.5f},
+                                  {"mask", AlphaMode::mask, 1, 0.75f},
+                                  {"blended texture", AlphaMode::blend, 0.8f, 0.75f}};
+
 // A square of 1 m at y = 1 that glows on both sides, over fog below it; with more surfaces that do not.
-TestScene glowing_stage(std::vector<Medium> media, std::vector<Mesh> others = {}) {
+TestScene glowing_stage(std::vector<Medium> media, std::vector<Mesh> others = {}, const Emitter& emitter = {}) {
     others.push_back(quad({-0.5f, 1, -0.5f}, {1, 0, 0}, {0, 0, 1}));
     TestScene stage = make_scene(std::move(media), {}, others);
-    Material glowing = lambert(vec3(0));
-    glowing.name = "lamp", glowing.emission = radiance;
-    stage.scene->materials = {lambert(vec3(1)), glowing};
+    Material glowing = lambert(vec3(0), radiance);
+    glowing.name = "lamp", glowing.alpha_mode = emitter.mode, glowing.alpha = emitter.alpha;
+    Texture texture;
+    texture.nearest = true, texture.texels = Image<vec4>(ivec2(4, 1), vec4(1));
+    for (int x = 0; x < 4; ++x) texture.texels.at(x, 0).w = static_cast<float>(x) < 4 * emitter.start ? 0.0f : 1.0f;
+    if (emitter.start > 0) glowing.base_texture = 0;
+    stage.scene->materials = {lambert(vec3(1)), glowing}, stage.scene->textures = {texture};
     for (Mesh& mesh : stage.scene->meshes) mesh.material = 0;
     stage.scene->meshes.back().material = 1;
     add_surfaces(*stage.scene, stage.snapshot);
     return stage;
 }
 
-dvec3 light_by_quadrature(double extinction, const Phase& phase, const Ray& ray) {
+dvec3 light_by_quadrature(double extinction, const Phase& phase, const Ray& ray, const Emitter& emitter = {}) {
+    const double start = double{emitter.start}, width = 1 - start;
     double sum = 0;
     constexpr int stretches = 8;
     for (int i = 0; i < stretches; ++i)
@@ -43,19 +59,33 @@ dvec3 light_by_quadrature(double extinction, const Phase& phase, const Ray& ray)
             double arriving = 0;
             for (const QuadratureNode& u : gauss_legendre(32))
                 for (const QuadratureNode& v : gauss_legendre(32)) {
-                    const dvec3 offset = dvec3(u.at - 0.5, 1, v.at - 0.5) - point;
+                    const dvec3 offset = dvec3(start + width * u.at - 0.5, 1, v.at - 0.5) - point;
                     const double distance = glm::length(offset);
-                    arriving += u.weight * v.weight * std::abs(offset.y) / (distance * distance * distance) *
+                    arriving += width * u.weight * v.weight * std::abs(offset.y) / (distance * distance * distance) *
                                 std::exp(-extinction * distance) *
                                 phase_value_of<double>(phase, glm::dot(offset, dvec3(ray.direction)) / distance);
                 }
             sum += along.weight * double(ray.t_max) / stretches * extinction * std::exp(-extinction * t) * arriving;
         }
-    return sum * dvec3(radiance);
+    return double{emitter.alpha} * sum * dvec3(radiance);
 }
 
 RayEstimate marched_light(const Snapshot& snapshot, const Ray& ray, int samples, const Settings& settings = {}) {
     return estimate_ray(find_mode("march").prepare(View{}, snapshot, settings, nullptr), ray, samples, fog_light);
+}
+
+// Radiance of a white floor below the square at y = 0, from many points on it.
+vec3 floor_light(const TestScene& stage, vec3 place) {
+    std::vector<vec2> u(1 << 17); // which half of the square is picked is by chance: .3 % of it
+    for (uint32_t i = 0; i < u.size(); ++i) {
+        const Sample2 pair = sample2(i, 5);
+        u[i] = {pair.x, pair.y};
+    }
+    SurfacePoint point;
+    point.position = place, point.normal = point.face_normal = {0, 1, 0}, point.instance = 0;
+    vec3 found(0);
+    add_emitted_light(emitters_of(stage.snapshot), stage.snapshot, {&point, 1}, u, {&found, 1});
+    return found;
 }
 
 TEST(MeshLight, FogScattersOnceAsByQuadrature) {
@@ -74,6 +104,55 @@ TEST(MeshLight, FogScattersOnceAsByQuadrature) {
             }
 }
 
+TEST(MeshLight, FogScattersWhatAlphaLeavesAsByQuadrature) {
+    const Phase phase = forward_phase(0.6f);
+    for (const Emitter& emitter : with_alpha)
+        for (const Ray& ray : {Ray{{-2, 0.3f, 0.15f}, glm::normalize(vec3(1, 0.02f, -0.03f)), 4},
+                               Ray{{-2, 1.6f, 0}, glm::normalize(vec3(1, -0.02f, 0.03f)), 4}}) {
+            const TestScene stage =
+                glowing_stage({homogeneous_medium(0.5f, {vec3(-50), vec3(50)}, phase)}, {}, emitter);
+            const dvec3 expected = light_by_quadrature(0.5, phase, ray, emitter);
+            for (const RayEstimate& found :
+                 {traced(stage.snapshot, ray, 1 << 13, 1), marched_light(stage.snapshot, ray, 1 << 11)}) {
+                EXPECT_NEAR(found.value.x, expected.x, 0.003 * expected.x + sigmas * found.error.x) << emitter.name;
+                EXPECT_LT(found.error.x, 0.02 * expected.x) << emitter.name;
+            }
+        }
+}
+
+// Across the square, from clear to opaque and back within its texture and from side to side.
+TestScene faded_stage(std::vector<Medium> media, AlphaMode mode) {
+    TestScene stage = glowing_stage(std::move(media), {roof(0.3f, 0.8f), floor_of(0, 1)});
+    Texture& texture = stage.scene->textures[0];
+    texture.nearest = false;
+    for (int x = 0; x < 4; ++x) texture.texels.at(x, 0).w = x % 2 ? 1.0f : 0.2f;
+    stage.scene->materials[1].base_texture = 0, stage.scene->materials[1].alpha_mode = mode;
+    stage.scene->materials[1].base_color = vec3(0.5f);
+    stage.scene->meshes.back().alphas = {0.9f, 1, 0.6f, 0.3f};
+    add_surfaces(*stage.scene, stage.snapshot);
+    return stage;
+}
+
+// Down to the square, past it, and onto the floor.
+TEST(MeshLight, MarchIsAsPathsOfOneOrderWithAlpha) {
+    const Medium fog = homogeneous_medium(0.5f, {vec3(-1), vec3(2)}, forward_phase(0.8f), vec3(0.9f, 0.5f, 0.2f));
+    for (const AlphaMode mode : {AlphaMode::mask, AlphaMode::blend}) {
+        const TestScene stage = faded_stage({fog}, mode);
+        for (const Ray& ray : {Ray{{0.1f, 1.7f, 0.1f}, glm::normalize(vec3(-0.1f, -1, 0.05f)), 0.65f},
+                               Ray{{0.1f, 0.9f, 2}, glm::normalize(vec3(-0.08f, 0.03f, -1)), 4}}) {
+            const RayEstimate paths = estimate_ray(path_mode(stage.snapshot, 1), ray, 1 << 14, fog_light),
+                              march = marched_light(stage.snapshot, ray, 1 << 11);
+            for (int c = 0; c < 3; ++c)
+                EXPECT_NEAR(march.value[c], paths.value[c],
+                            sigmas * std::hypot(march.error[c], paths.error[c]) + 0.003 * paths.value[c]);
+        }
+        const Ray down{{0.1f, 0.5f, 0.1f}, {0, -1, 0}, 1};
+        const RayEstimate seen = estimate_ray(path_mode(stage.snapshot, 1), down, 1 << 14, surface_light);
+        const double lit = floor_light(stage, {0.1f, 0, 0.1f}).y * std::exp(-0.5 * 0.5);
+        EXPECT_NEAR(seen.value.y, lit, sigmas * seen.error.y + 0.01 * lit);
+    }
+}
+
 TEST(MeshLight, MarchIsAsPathsOfOneOrder) {
     const Medium grid = medium_of(unit_volume(16, [](vec3 p) { return 0.2f + p.x * p.y; }), 3);
     const Medium colored = homogeneous_medium(0.5f, {vec3(-1), vec3(2)}, forward_phase(0.8f), vec3(0.9f, 0.5f, 0.2f));
@@ -90,46 +169,58 @@ TEST(MeshLight, MarchIsAsPathsOfOneOrder) {
     }
 }
 
-// Under a square, and with half of it behind a shade; as Howell's B-4.
+// Under the corner of a rectangle at a distance of 1; Howell's B-4.
+double under_corner(double width, double depth) {
+    const auto part = [](double a, double b) {
+        const double root = std::sqrt(1 + a * a);
+        return a / root * std::atan(b / root);
+    };
+    return (part(width, depth) + part(depth, width)) / (2 * std::numbers::pi);
+}
+
+// Under a square, and with half of it behind a shade.
 TEST(MeshLight, SurfacesGetThePublishedIrradiance) {
-    const double x = 0.5, root = std::sqrt(1 + x * x);
-    const double quarter = 2 * (x / root * std::atan(x / root)) / (2 * std::numbers::pi);
-    std::vector<vec2> u(1 << 17); // which half of the square is picked is by chance: .3 % of it
-    for (uint32_t i = 0; i < u.size(); ++i) {
-        const Sample2 pair = sample2(i, 5);
-        u[i] = {pair.x, pair.y};
-    }
-    SurfacePoint point;
-    point.normal = point.face_normal = {0, 1, 0}, point.instance = 0;
+    const double quarter = under_corner(0.5, 0.5);
     for (const bool shaded : {false, true}) {
         std::vector<Mesh> others{floor_of(0, 1, 0)};
         if (shaded) others.push_back(quad({0, 0.5f, -9}, {9, 0, 0}, {0, 0, 18}));
         const TestScene stage = glowing_stage({}, others);
         const double expected = (shaded ? 2 : 4) * quarter;
-        vec3 found(0);
-        add_emitted_light(emitters_of(stage.snapshot), stage.snapshot, {&point, 1}, u, {&found, 1});
+        const vec3 found = floor_light(stage, vec3(0));
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected * double{radiance[c]}, 0.01 * found[c]);
     }
 }
 
-TEST(MeshLight, ModesSayWhatBecomesOfIt) {
-    TestScene stage = glowing_stage({homogeneous_medium(0.5f, {vec3(-3), vec3(3)})});
-    const View view = view_of({0.3f, 0.4f, 4}, {0, 0, 0});
-    for (const Mode& mode : modes()) {
-        const bool without = mode.name == "billboard" || mode.name == "radial-blur";
-        const bool lamps = !without && mode.name != "march" && mode.name != "path";
-        EXPECT_EQ(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_no_fog),
-                  without)
-            << mode.name;
-        EXPECT_EQ(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::lamps_for_surfaces), lamps)
-            << mode.name;
-        EXPECT_FALSE(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_nothing));
+// Half of the light of an opaque square, and that of the quarter that a mask leaves; as a path sees them.
+TEST(MeshLight, SurfacesGetWhatAlphaLeaves) {
+    for (const Emitter& emitter : with_alpha) {
+        const TestScene stage = glowing_stage({}, {floor_of(0, 1, 0)}, emitter);
+        const double hidden = emitter.start > 0 ? under_corner(0.25, 0.5) : -under_corner(0.5, 0.5);
+        const double expected = 2 * double{emitter.alpha} * (under_corner(0.5, 0.5) - hidden) * double{radiance.y};
+        EXPECT_NEAR(floor_light(stage, vec3(0)).y, expected, 0.01 * expected) << emitter.name;
+        const RayEstimate seen = traced(stage.snapshot, {{0, 0.5f, 0}, {0, -1, 0}, 1}, 1 << 14, 1);
+        EXPECT_NEAR(seen.value.y, expected, sigmas * seen.error.y) << emitter.name;
+        EXPECT_LT(seen.error.y, 0.015 * expected) << emitter.name;
     }
-    stage.scene->materials[1].alpha_mode = AlphaMode::blend;
-    for (const Mode& mode : modes())
-        EXPECT_EQ(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_nothing),
-                  mode.name != "path")
-            << mode.name;
+}
+
+TEST(MeshLight, ModesSayWhatBecomesOfIt) {
+    const View view = view_of({0.3f, 0.4f, 4}, {0, 0, 0});
+    std::vector<Emitter> emitters{{}, {"clear", AlphaMode::blend, 0}};
+    emitters.insert(emitters.end(), std::begin(with_alpha), std::end(with_alpha));
+    for (const Emitter& emitter : emitters) {
+        const TestScene stage = glowing_stage({homogeneous_medium(0.5f, {vec3(-3), vec3(3)})}, {}, emitter);
+        for (const Mode& mode : modes()) {
+            const bool seen = emitter.alpha > 0;
+            const bool without = mode.name == "billboard" || mode.name == "radial-blur";
+            const bool lamps = seen && !without && mode.name != "march" && mode.name != "path";
+            EXPECT_EQ(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::emission_lights_no_fog),
+                      seen && without)
+                << mode.name << ", " << emitter.name;
+            EXPECT_EQ(has_limitation(mode.limitations(view, stage.snapshot, {}), limitation::lamps_for_surfaces), lamps)
+                << mode.name << ", " << emitter.name;
+        }
+    }
 }
 }
 }

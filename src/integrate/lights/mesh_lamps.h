@@ -17,7 +17,7 @@ struct MeshLamps {
 
 inline constexpr double lamps_tolerance = 0.1;
 
-// Lamps for the opaque emissive surfaces of a snapshot; null if there are none.
+// Lamps for the emissive surfaces of a snapshot; null if there are none.
 std::shared_ptr<const MeshLamps> mesh_lamps(const Snapshot& snapshot);
 
 // The snapshot with lamps for its emissive surfaces appended to its lights, if `wanted`.

@@ -55,6 +55,30 @@ StressScene behind_grille(double bar) {
     return glowing(std::move(meshes));
 }
 
+// The glowing plate with an alpha and a texture.
+StressScene with_alpha(AlphaMode mode, float alpha, Texture texture) {
+    StressScene scene = glowing({plate(1, 1)});
+    Material& material = scene.scene->materials[0];
+    material.alpha_mode = mode, material.alpha = alpha, material.base_texture = 0;
+    scene.scene->textures = {std::move(texture)};
+    add_surfaces(*scene.scene, scene.snapshot);
+    return scene;
+}
+
+StressScene clear(double alpha) {
+    Texture texture;
+    texture.texels = Image<vec4>(ivec2(1), vec4(1));
+    return with_alpha(AlphaMode::blend, static_cast<float>(alpha), std::move(texture));
+}
+
+// Stripes of which a share is left.
+StressScene cut_out(double share) {
+    Texture texture;
+    texture.nearest = true, texture.texels = Image<vec4>(ivec2(80, 1), vec4(1));
+    for (int x = 0; x < 80; ++x) texture.texels.at(x, 0).w = x % 20 < static_cast<int>(20 * share) ? 1.0f : 0.0f;
+    return with_alpha(AlphaMode::mask, 1, std::move(texture));
+}
+
 StressScene eye_before(double distance) {
     return glowing({plate(1, 1)}, camera_from({0.1f, 0.1f, static_cast<float>(distance)}, {1.5f, 0.3f, 1.5f}));
 }
@@ -74,6 +98,10 @@ std::vector<StressCase> stress_glow() {
                    Claim::physical, excuses, in_fog, usual),
         StressCase("grille", group, "it shines through bars that get fine", "bar", "m", {0.4, 0.1, 0.03},
                    Claim::physical, excuses, behind_grille, usual),
+        StressCase("clear-glow", group, "a glowing pane gets clear", "alpha", "", {1, 0.5, 0.1}, Claim::physical,
+                   excuses, clear, usual),
+        StressCase("cut-out-glow", group, "little is left of glowing stripes", "share left", "", {0.8, 0.4, 0.1},
+                   Claim::physical, excuses, cut_out, usual),
         StressCase("eye-at-glow", group, "the camera comes near it", "distance", "m", {2, 0.5, 0.02}, Claim::physical,
                    excuses, eye_before, usual),
     };

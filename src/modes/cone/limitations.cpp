@@ -53,7 +53,7 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
     add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);
     if (settings.terms.emission) {
         add_out_of_gamut(snapshot, limitations), add_lamps_for_fire(snapshot, limitations);
-        add_dark_emission(snapshot, limitations), add_lamps_for_surfaces(view, snapshot, limitations);
+        add_lamps_for_surfaces(view, snapshot, limitations);
     }
     add_to_every_mode(view, snapshot, limitations);
     return limitations;

@@ -59,7 +59,6 @@ Limitations march_limitations(const View& view, const Snapshot& snapshot, const 
     add_light_transmittance(snapshot, terms.light, limitations);
     add_sampled_filters(snapshot, Sampled::fine_gobos, gobo_nodes, limitations);
     if (terms.emission) add_out_of_gamut(snapshot, limitations);
-    if (terms.emission) add_dark_emission(snapshot, limitations);
     add_to_every_mode(view, snapshot, limitations);
     return limitations;
 }

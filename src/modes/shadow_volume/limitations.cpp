@@ -32,7 +32,7 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
     }
     if (settings.terms.emission) {
         add_out_of_gamut(snapshot, limitations), add_lamps_for_fire(snapshot, limitations);
-        add_dark_emission(snapshot, limitations), add_lamps_for_surfaces(view, snapshot, limitations);
+        add_lamps_for_surfaces(view, snapshot, limitations);
     }
     add_single_scattering(view, snapshot, limitations), add_mean_environment(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);

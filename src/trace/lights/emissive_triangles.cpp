@@ -10,9 +10,14 @@
 namespace tyndall {
 namespace {
 bool glows(const Scene& scene, const Mesh& mesh) {
-    if (mesh.material < 0) return false;
-    const Material& material = scene.materials[mesh.material];
-    return material.alpha_mode == AlphaMode::opaque && max_component(material.emission) > 0;
+    return mesh.material >= 0 && can_emit(scene.materials[mesh.material]);
+}
+
+// The highest opacity in a triangle if no texture lowers it.
+float highest_opacity(const Material& material, const Mesh& mesh, glm::uvec3 corners) {
+    const std::vector<float>& alphas = mesh.alphas;
+    const float highest = alphas.empty() ? 1 : std::max({alphas[corners.x], alphas[corners.y], alphas[corners.z]});
+    return opacity_at(material, material.alpha * highest);
 }
 
 void add_instance(const Snapshot& snapshot, int index, EmissiveTriangles& emissive) {
@@ -20,7 +25,8 @@ void add_instance(const Snapshot& snapshot, int index, EmissiveTriangles& emissi
     const Instance& instance = scene.instances[index];
     const Mesh& mesh = scene.meshes[instance.mesh];
     if (!glows(scene, mesh)) return;
-    const float brightness = luminance(scene.materials[mesh.material].emission);
+    const Material& material = scene.materials[mesh.material];
+    const float brightness = luminance(material.emission);
     const mat4 matrix = instance_matrix(scene, instance, snapshot.seconds);
     const Pose pose = pose_of(scene, instance, snapshot.seconds);
     std::vector<int>& places = emissive.by_shape[index];
@@ -30,7 +36,7 @@ void add_instance(const Snapshot& snapshot, int index, EmissiveTriangles& emissi
         const glm::uvec3 corners = mesh.triangles[i];
         EmissiveTriangle triangle{index, static_cast<int>(i), corner(corners.x), corner(corners.y), corner(corners.z)};
         triangle.area = 0.5f * glm::length(glm::cross(triangle.b - triangle.a, triangle.c - triangle.a));
-        triangle.probability = triangle.area * brightness;
+        triangle.probability = triangle.area * brightness * highest_opacity(material, mesh, corners);
         if (!(triangle.probability > 0) || !std::isfinite(triangle.probability)) continue;
         places[i] = static_cast<int>(emissive.triangles.size());
         emissive.triangles.push_back(triangle);
@@ -70,8 +76,8 @@ EmissivePoint sample_triangles(const EmissiveTriangles& emissive, const Occluder
     hit.instance[0] = triangle.instance, hit.triangle[0] = triangle.triangle;
     hit.u[0] = root * (1 - v.y), hit.v[0] = root * v.y;
     const SurfacePoint surface = surfaces.surface(Ray{}, hit, 0);
-    return {surface.position, surface.face_normal, surface.emission, triangle.probability / triangle.area,
-            triangle.instance};
+    return {surface.position, surface.face_normal, surface.emission * surface.alpha,
+            triangle.probability / triangle.area, triangle.instance};
 }
 
 float triangle_pdf(const EmissiveTriangles& emissive, int instance, int triangle) {

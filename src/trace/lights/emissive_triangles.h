@@ -1,4 +1,4 @@
-// Importance sampling of emissive surfaces: points by area times brightness.
+// Importance sampling of emissive surfaces: points by area times brightness times opacity, without textures.
 #pragma once
 #include "base/math.h"
 
@@ -22,13 +22,12 @@ struct EmissiveTriangles {
     std::vector<std::vector<int>> by_shape; // [instance][triangle] -> index above, -1 or empty = none
 };
 
-// The opaque triangles with an emissive material; null if there are none. Those with alpha are not sampled: only random
-// rays find them. Cached while surfaces do not move.
+// The triangles with an emissive material; null if there are none. Cached while surfaces do not move.
 std::shared_ptr<const EmissiveTriangles> emissive_triangles(const Snapshot& snapshot);
 
 struct EmissivePoint {
     vec3 position{0}, normal{0}; // of the face
-    vec3 emission{0};            // radiance
+    vec3 emission{0};            // radiance times opacity, as a camera ray sees it: 0 in the holes of a mask
     float pdf = 0;               // 1/m²
     int instance = 0;            // of the scene
 };

@@ -31,7 +31,7 @@ float OccluderGeometry::opacity(uint32_t triangle, float u, float v) const {
     if (!mesh->alphas.empty()) alpha *= interpolated(mesh->alphas, corners, u, v);
     if (base_texture && !mesh->uvs.empty())
         alpha *= sample_alpha(*base_texture, interpolated(mesh->uvs, corners, u, v));
-    return masks() ? (alpha >= material->alpha_cutoff ? 1.0f : 0.0f) : std::clamp(alpha, 0.0f, 1.0f);
+    return opacity_at(*material, alpha);
 }
 
 void pass_mask_holes(const RTCFilterFunctionNArguments* call) {

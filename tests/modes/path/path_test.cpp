@@ -81,6 +81,40 @@ TEST(Path, FurnaceWithSurfacesAndOverlappingFogIsWhite) {
     expect_close(traced(snapshot, {{0.4f, 0.45f, 3}, {0, 0, -1}}, 512), 1, 0.006);
 }
 
+// White, between clear and opaque.
+Texture faded_texture() {
+    Texture texture;
+    texture.texels = Image<vec4>(ivec2(4, 4), vec4(1));
+    for (int i = 0; i < 16; ++i) texture.texels.at(i % 4, i / 4).w = to_unit(hash(static_cast<uint32_t>(i), 8u));
+    return texture;
+}
+
+// Glows with 1 - base color.
+Material glowing_with_alpha(AlphaMode mode) {
+    Material material = lambert(vec3(0.6f, 0.3f, 0), vec3(0.4f, 0.7f, 1));
+    material.base_texture = 0, material.alpha_mode = mode;
+    return material;
+}
+
+TEST(Path, FurnaceWithGlowingWallsThatLetLightThroughIsWhite) {
+    for (const AlphaMode mode : {AlphaMode::mask, AlphaMode::blend}) {
+        Scene scene;
+        scene.materials = {glowing_with_alpha(mode)}, scene.textures = {faded_texture()};
+        for (const float side : {-0.5f, 1.2f}) {
+            add_mesh(scene, quad({-1, side, -1}, {3, 0, 0}, {0, 0, 3}, 0));
+            add_mesh(scene, quad({-1, -1, side}, {3, 0, 0}, {0, 3, 0}, 0));
+            scene.meshes.back().alphas = {1, 0.7f, 0.9f, 1};
+        }
+        Snapshot snapshot =
+            snapshot_of({noise_grid(4, forward_phase(0.5f)), homogeneous_medium(0.3f, unit_box)}, {}, vec3(1));
+        add_surfaces(scene, snapshot);
+        snapshot.background.color = vec3(1);
+        for (const Ray& ray : {Ray{{0.4f, 0.45f, 1.1f}, glm::normalize(vec3(0.1f, 0, -1))},
+                               Ray{{0.4f, 0.45f, 3}, glm::normalize(vec3(0.1f, 0.1f, -1))}})
+            expect_close(traced(snapshot, ray, 2048), 1, 0.006);
+    }
+}
+
 TEST(Path, GlowingFurnaceIsEven) {
     // A closed box whose walls glow with 1 - base color: everything inside has radiance 1, fog of albedo 1 too.
     Scene scene;
@@ -207,21 +241,23 @@ TEST(Path, LightBouncesBetweenSurfaces) {
 }
 
 TEST(Path, GlowOnFogIsTheSameAimedAtOrFoundByChance) {
-    // A glowing disc-like quad above a fog box; aiming is left out for BLEND materials, even opaque ones.
-    RayEstimate results[2];
-    for (const bool aimed : {false, true}) {
+    // A glowing disc-like quad above a fog box; without the snapshot's scene, paths do not know where to aim.
+    for (const AlphaMode mode : {AlphaMode::opaque, AlphaMode::mask, AlphaMode::blend}) {
         Scene scene;
-        scene.materials = {lambert(vec3(0), vec3(5, 3, 1))};
-        scene.materials[0].alpha_mode = aimed ? AlphaMode::opaque : AlphaMode::blend;
+        scene.materials = {glowing_with_alpha(mode)}, scene.textures = {faded_texture()};
         add_mesh(scene, quad({-0.5f, 1.2f, -0.5f}, {2, 0, 0}, {0, 0, 2}, 0));
         Snapshot snapshot = snapshot_of({noise_grid(4, forward_phase(0.5f))}, {});
         add_surfaces(scene, snapshot);
-        results[aimed] = traced(snapshot, {{0.4f, 0.45f, 3}, {0, 0, -1}}, 2048);
-    }
-    for (int c = 0; c < 3; ++c) {
-        const double error = glm::length(glm::dvec2(results[0].error[c], results[1].error[c]));
-        EXPECT_LT(std::abs(results[0].value[c] - results[1].value[c]), sigmas * error);
-        EXPECT_LT(error, 0.02 * results[0].value[c]);
+        RayEstimate results[2];
+        for (const bool aimed : {false, true}) {
+            snapshot.scene = aimed ? &scene : nullptr;
+            results[aimed] = traced(snapshot, {{0.4f, 0.45f, 3}, {0, 0, -1}}, 4096);
+        }
+        for (int c = 0; c < 3; ++c) {
+            const double error = glm::length(glm::dvec2(results[0].error[c], results[1].error[c]));
+            EXPECT_LT(std::abs(results[0].value[c] - results[1].value[c]), sigmas * error);
+            EXPECT_LT(error, 0.02 * results[0].value[c]);
+        }
     }
 }
 
