@@ -108,7 +108,8 @@ dvec3 light_along_ray(RayMarch& on, size_t light_index) {
             const double low = std::max(fog.pieces[piece].low, lit.low);
             const double high = std::min(fog.pieces[piece].high, lit.high);
             split_at_lobes(on, piece, low, high, along, [&](double from, double to) {
-                visit_nodes(along, from, to,
+                const bool across = crosses_cone(along, {low, high}, from, to);
+                visit_nodes(along, gauss_legendre(across ? nodes_across_cone : nodes_per_step), from, to,
                             [&, part = share](double t, double weight) { add(piece, t, part * weight); });
             });
             if (fog.pieces[piece].high >= lit.high) break;

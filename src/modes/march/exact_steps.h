@@ -8,6 +8,7 @@
 
 namespace tyndall {
 inline constexpr int nodes_per_step = 2;
+inline constexpr int nodes_across_cone = 4; // exact for a soft edge squared, a polynomial of degree 4 along the ray
 
 // A segment that sees a fraction of a light's sample points.
 struct LitPart {
@@ -94,9 +95,16 @@ inline vec3 albedo_on(const RayMarch& on, const Optics& optics, double t) {
     return optics.albedo_field ? albedo_at(optics, vec3(on.at(t))) : optics.albedo;
 }
 
+// Whether a step is one of less than four of a stretch of a cone's light: the soft edge then changes too much for
+// nodes_per_step.
+inline bool crosses_cone(const LightAlong& along, Interval<double> stretch, double low, double high) {
+    return has_cone(*along.light) && high - low > 0.3 * stretch.length();
+}
+
 // Quadrature nodes of one step: in t for suns, in the angle seen from the light for local lights.
-template<class Add> void visit_nodes(const LightAlong& along, double low, double high, const Add& add) {
-    const std::span<const QuadratureNode> nodes = gauss_legendre(nodes_per_step);
+template<class Add>
+void visit_nodes(const LightAlong& along, std::span<const QuadratureNode> nodes, double low, double high,
+                 const Add& add) {
     if (!along.local()) {
         for (const QuadratureNode& node : nodes) add(low + (high - low) * node.at, (high - low) * node.weight);
         return;

@@ -13,8 +13,9 @@ void append_march_rows(std::vector<SettingRow>& rows) {
                               "maximum length of a step, as a fraction of the ray's length in fog",
                               TYNDALL_FIELD(march.step_share)));
     rows.push_back(number_row("march.near_light", "", 0.005, 10,
-                              "maximum length of a step, as a fraction of the distance to a local light; in a spot's "
-                              "beam also an eighth of this fraction of the length inside it",
+                              "maximum length of a step, as a fraction of the distance to a local light; where "
+                              "visibility is sampled, in a spot's beam also an eighth of this fraction of the length "
+                              "inside it",
                               TYNDALL_FIELD(march.near_light)));
     rows.push_back(number_row("march.min_transmittance", "", 0, 0.5,
                               "marching stops where transmittance falls below this",

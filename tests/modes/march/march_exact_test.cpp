@@ -99,6 +99,35 @@ TEST(MarchExact, NarrowSpotsAreAsBrightAsWide) {
                 << degrees;
 }
 
+TEST(MarchExact, SoftBeamsFromTheSideMatchQuadrature) {
+    // Across the axis 8 m from the light, and aslant, where the light's nearest point does not divide the beam: one
+    // part at preview's bounds however wide the beam, and one at the reference's for the narrowest.
+    const double s = double(0.01f);
+    for (const float degrees : {0.2f, 0.57f, 1.0f, 5.0f, 10.0f, 30.0f})
+        for (const float slope : {0.0f, 0.5f})
+            for (const float inner : {0.0f, 0.9f}) {
+                const float edge = glm::radians(degrees);
+                const Light light = spot_light({0, 0, 0}, {0, -1, 0}, 40, inner * edge, edge);
+                const TestScene stage = make_scene({homogeneous_medium(0.01f)}, {light}, {});
+                const vec3 direction = glm::normalize(vec3(1, slope, 0));
+                const Ray ray{vec3(0, -8, 0) - 20.0f * direction, direction, 40};
+                const double outer = std::cos(double(edge)), full = std::cos(double(inner * edge));
+                const auto integrand = [&](double t) {
+                    const dvec3 point = dvec3(ray.origin) + t * dvec3(direction);
+                    const double away = glm::length(point);
+                    const double lit = std::clamp((-point.y / away - outer) / (full - outer), 0.0, 1.0);
+                    return s / four_pi * 40 / (away * away) * lit * lit * std::exp(-s * (t + away));
+                };
+                const double half = 1.5 * 8 * std::tan(double(edge)), near = std::max(20 - half, 0.0);
+                const double expected = integral(integrand, near, std::min(20 + 2 * half, 40.0), 4000);
+                Settings coarse;
+                coarse.march.visibility = Visibility::exact;
+                for (const Settings& settings : {exact_settings(), coarse})
+                    EXPECT_NEAR(marched(stage.snapshot, settings, ray).radiance.x / expected, 1, 1e-3)
+                        << degrees << ' ' << slope << ' ' << inner;
+            }
+}
+
 TEST(MarchExact, RayThroughTheLightItself) {
     // Inside 0.1 mm the inverse square law is held: s/(4π)·(2·∫ from 1e-4 + 2·1e-4/1e-8), with e^(-s(t+r)) in thin fog.
     const double s = 1e-3f, reach = Light{}.core;
