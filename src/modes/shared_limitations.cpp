@@ -142,7 +142,7 @@ StepLengths step_lengths(const View& view, const Snapshot& snapshot, const Mediu
 }
 }
 
-void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations) {
+void add_steps(const View& view, const Snapshot& snapshot, int steps, Limitations& limitations) {
     for (const Medium& medium : thickest_media(snapshot)) {
         if (only_emits(medium.optics)) continue; // sampled at its own nodes, not at steps
         const auto [step, inside] = step_lengths(view, snapshot, medium, steps);
@@ -157,7 +157,7 @@ void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed
                                        medium.name,
                                        {step, voxel}});
         }
-        if (fixed && depth > deep_step)
+        if (depth > deep_step)
             limitations.push_back({depth > dark_depth ? Severity::wrong : Severity::degraded,
                                    &limitation::deep_steps,
                                    Subject::medium,

@@ -81,9 +81,8 @@ void add_light_grid_cells(const Snapshot& snapshot, int cells, Limitations& limi
 // If none meets that: up to fog_reach(), where fog becomes opaque.
 std::vector<Ray> probing_rays(const View& view, const Snapshot& snapshot);
 
-// Reports media for which `steps` steps along a ray are too few to resolve a grid's detail; if the number is `fixed`,
-// also those too dense for such steps.
-void add_steps(const View& view, const Snapshot& snapshot, int steps, bool fixed, Limitations& limitations);
+// Reports media for which `steps` equal steps along a ray are too few: to resolve a grid's detail, or dense fog.
+void add_steps(const View& view, const Snapshot& snapshot, int steps, Limitations& limitations);
 
 // Optical depth of a step or froxel beyond which it attenuates most of the light that crosses it, so that results
 // depend on where the sample falls.

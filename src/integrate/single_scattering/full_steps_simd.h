@@ -12,7 +12,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {
 namespace {
-// Adds the steps marked in `whole`, each evaluated at its midpoint, where the extinction is already known.
+// Where a step is evaluated: in the middle or, in equal steps, which may be deep, at the mean of what is seen of them:
+// 1/x - 1/(e^x - 1) of the way through a depth x.
+HWY_INLINE Floats seen_at(const SingleScattering& frame, const Floats& low, const Floats& high, const Floats& inside) {
+    if (frame.rule) return (low + high) * 0.5f;
+    const Floats x = inside * frame.style.view_depth, deep = max(x, 0.1f);
+    const Floats share = (1.0f - exp(-deep) / mean_transmittance(deep)) / deep;
+    return fma(select(x < 0.1f, fma(x, -1.0f / 12, 0.5f), share), high - low, low);
+}
+
+// Adds the steps marked in `whole`, whose extinction at the midpoint is already known.
 void add_full_steps(Packet& packet, size_t index) {
     const SingleScattering& frame = packet.frame;
     const Light& light = frame.snapshot.lights[index];
@@ -35,9 +44,11 @@ void add_full_steps(Packet& packet, size_t index) {
         if (!any(wanted)) continue;
         evals = evals + select(wanted, 1.0f, 0.0f);
         const Floats low = load(at + 16 * k), high = load(at + 16 * (k + 1));
-        const Vec3s position = fma(direction, (low + high) * 0.5f, origin);
-        const Floats before = (load(depths + 16 * k) + load(depths + 16 * (k + 1))) * (0.5f * frame.style.view_depth);
-        Floats weight = share * (high - low) * exp(-(before + light_depth16(frame.depths[index], position, wanted)));
+        const Floats before = load(depths + 16 * k), after = load(depths + 16 * (k + 1));
+        const Vec3s position = fma(direction, seen_at(frame, low, high, after - before), origin);
+        Floats weight = share * (high - low) *
+                        seen_through(frame, (before + after) * 0.5f, after - before,
+                                     light_depth16(frame.depths[index], position, wanted));
         if (frame.style.range < StyleSettings().range)
             weight = weight * style_fade(frame.style, frame.camera, position);
         const float* extinction = packet.scratch.extinction.data() + 16 * media.size() * k;

@@ -152,6 +152,24 @@ HWY_INLINE Floats depth_at(const Packet& packet, const Nodes& nodes, const Segme
     return fma(gather(depth + 16, cut) - depth_before, max(min(share, 1.0f), 0.0f), depth_before);
 }
 
+// Transmittance to the eye of the fog a point stands for: `depth` deep in the middle and `inside` deep by itself, with
+// `beyond` added. Equal steps may be so deep that the middle does not stand for all; steps of a rule are not.
+HWY_INLINE Floats seen_through(const SingleScattering& frame, const Floats& depth, const Floats& inside,
+                               const Floats& beyond) {
+    if (!frame.sampled || frame.rule) return exp(-(depth * frame.style.view_depth + beyond));
+    const Floats before = max(depth - inside * 0.5f, 0.0f) * frame.style.view_depth;
+    return exp(-(before + beyond)) * mean_transmittance(inside * frame.style.view_depth);
+}
+
+// Optical depth of the fog that the queued nodes stand for, in equal steps.
+HWY_INLINE Floats depth_inside(const Packet& packet, const Nodes& nodes, const Floats& length) {
+    if (!packet.frame.sampled || packet.frame.rule || packet.spread == Spread::points) return 0.0f;
+    const float *at = packet.scratch.cuts.at.data(), *depth = packet.scratch.depth.data();
+    const Ints cut = load(nodes.cut);
+    const Floats step = gather(at + 16, cut) - gather(at, cut);
+    return (gather(depth + 16, cut) - gather(depth, cut)) * (length / max(step, 1e-12f));
+}
+
 // Evaluates the queued nodes and adds them to their rays.
 void add_nodes(Packet& packet, int light) {
     const SingleScattering& frame = packet.frame;
@@ -166,7 +184,7 @@ void add_nodes(Packet& packet, int light) {
     const Vec3s origin = Packet::rays(packet.origin, ray), direction = Packet::rays(packet.direction, ray);
     const Vec3s position = fma(direction, placed.t, origin);
     const Floats depth = depth_at(packet, nodes, {origin, direction, placed.t});
-    Floats weight = placed.length * exp(-depth * frame.style.view_depth);
+    Floats weight = placed.length * seen_through(frame, depth, depth_inside(packet, nodes, placed.length), 0.0f);
     if (frame.style.range < StyleSettings().range) weight = weight * style_fade(frame.style, frame.camera, position);
     const Vec3s source = light >= 0                ? scattered(packet, static_cast<size_t>(light), position, direction)
                          : light == multiple_light ? multiply_scattered(frame, position, direction)

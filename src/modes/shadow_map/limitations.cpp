@@ -51,7 +51,7 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     Limitations limitations = main_mode().limitations(view, snapshot, like);
     const ShadowMapSettings& own = settings.of<ShadowMapSettings>();
     add_map_shadows(view, snapshot, settings, limitations);
-    add_steps(view, snapshot, own.steps, true, limitations);
+    add_steps(view, snapshot, own.steps, limitations);
     add_few_steps(view, snapshot, settings, limitations);
     std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
     add_sampled_filters(snapshot, Sampled::all_filters, own.steps, limitations);

@@ -20,7 +20,7 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
     const ShadowVolumeSettings& own = settings.of<ShadowVolumeSettings>();
     const bool sampled = settings.terms.heterogeneity && samples_fog(snapshot, own);
     if (sampled) {
-        add_steps(view, snapshot, own.steps, false, limitations);
+        add_steps(view, snapshot, own.steps, limitations);
         if (without_froxels(settings.terms.light) == LightTransmittance::grid)
             add_light_grid_cells(snapshot, settings.terms.light_resolution, limitations);
     } else {

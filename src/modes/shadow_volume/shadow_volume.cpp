@@ -62,6 +62,7 @@ Mode shadow_volume_mode() {
             .set_quality = set_shadow_volume_quality,
             .rungs = shadow_volume_rungs,
             .color = "#CC79A7",
-            .interactive = true};
+            .interactive = true,
+            .adapts_steps = false};
 }
 }

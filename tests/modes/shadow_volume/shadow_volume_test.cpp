@@ -166,6 +166,29 @@ TEST(ShadowVolume, SampledFogApproachesTheReference) {
     EXPECT_TRUE(has_limitation(said, limitation::drawn_as_homogeneous));
 }
 
+TEST(ShadowVolume, DeepStepsKeepTheirLight) {
+    // Fog 20 deep in 4 steps, lit evenly: E p a (1 - e^-20), whatever the steps. A lamp far away is as even, but has
+    // two nodes a step: the second stands for 2.5 to 5, and lies 0.19 too deep for the middle of that. The
+    // first of later steps, as much too near, make up for a tenth of it.
+    const Light far = point_light({0, 300, 0}, 9e4f);
+    const double too_deep = std::exp(-2.5) * std::expm1(-2.5) * std::expm1(-5 * (std::sqrt(1.0 / 12) - 0.25));
+    Settings settings;
+    settings.terms.light = LightTransmittance::off, settings.of<ShadowVolumeSettings>().fog = ShadowFog::sampled;
+    settings.of<ShadowVolumeSettings>().steps = 4;
+    for (const auto& [light, missing] : {std::pair(sun_light({0, -1, 0}), 0.0), {far, too_deep}}) {
+        const Snapshot snapshot =
+            snapshot_of({homogeneous_medium(5, {vec3(-1, -0.5f, -2), vec3(1, 0.5f, 2)})}, {light});
+        const View view = view_of({0, 0, 5}, vec3(0));
+        const Ray ray{{0, 0, 5}, {0, 0, -1}, 10};
+        const float found = run_mode("shadow-volume", view, snapshot, settings, {ray})[0].radiance.x;
+        EXPECT_NEAR(double{found} * 4 * std::numbers::pi, 1 - missing, missing > 0 ? 0.1 * missing : 1e-5);
+        const Limitations said = find_mode("shadow-volume").limitations(view, snapshot, settings);
+        const auto deep = std::ranges::find(said, &limitation::deep_steps, &Limitation::kind);
+        ASSERT_NE(deep, said.end());
+        EXPECT_EQ(deep->severity, Severity::wrong);
+    }
+}
+
 TEST(ShadowVolume, EndlessFogAndFarEnds) {
     const TestScene stage =
         make_scene({homogeneous_medium(0.2f)}, {sun_light({1, -1e-3f, 0}, 2), point_light({0, 3, 0}, 5)}, furniture());
