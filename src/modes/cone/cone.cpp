@@ -84,7 +84,7 @@ AnchoredFog anchored(std::span<const Medium> media, dvec3 anchor, const Light* l
 ConeEdges edges_of(const Light& light, const ConeSettings& settings) {
     const auto versine = [](double angle) { return 2 * std::sin(0.5 * angle) * std::sin(0.5 * angle); };
     const double outer = light.outer_cone, soft = settings.inner * outer;
-    const double scale = 1 / std::max(versine(outer) - versine(light.inner_cone), 1e-6);
+    const double scale = 1 / std::max(versine(outer) - versine(light.inner_cone), min_cone_edge(outer));
     const double even = settings.edge == ConeEdge::soft ? versine(soft) : std::max(versine(outer) - 1 / scale, 0.0);
     ConeEdges edges;
     edges.cosine = static_cast<float>(std::max(std::cos(outer), 0.0)), edges.sine = static_cast<float>(std::sin(outer));

@@ -159,6 +159,17 @@ TEST(Cone, NothingBehindTheApexAndNothingAtZeroAngle) {
     EXPECT_EQ(coned(none, {{0, 0, 4}, {0, 0, -1}, 8}).radiance.x, 0);
 }
 
+TEST(Cone, NarrowSpotsAreAsBrightAsWide) {
+    const Ray ray{{0, 0, -3}, {0, 0, 1}, 2}; // on the axis, towards the light
+    const auto light_of = [&](double inner, double outer) {
+        return coned(snapshot_of({homogeneous_medium(0.2f)}, {spot(vec3(0), {0, 0, -1}, inner, outer)}), ray)
+            .radiance.x;
+    };
+    for (const double degrees : {0.051, 0.07, 0.1, 0.5})
+        for (const double inner : {0.0, 1.0})
+            EXPECT_NEAR(light_of(inner * degrees, degrees) / light_of(10, 20), 1, 1e-4) << degrees;
+}
+
 TEST(Cone, NinetyDegreesIsHalfOfAPointLight) {
     const Snapshot half = snapshot_of({homogeneous_medium(0.3f)}, {spot(vec3(0), {0, 0, -1}, 90, 90)});
     const Snapshot point = snapshot_of({homogeneous_medium(0.3f)}, {point_light(vec3(0))});
