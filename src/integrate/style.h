@@ -21,8 +21,8 @@ struct StyleSettings {
 
 bool is_stylized(const StyleSettings& style);
 
-// The snapshot with style.density applied to its media, and style.tint to its lights, ambient light and emission. The
-// integrator must still apply style_fade() and view_depth; LightDepth::scale carries light_depth.
+// The snapshot with style.density applied to its media, and style.tint to lights, ambient light and their emission. The
+// integrator must still tint surfaces' light and apply style_fade() and view_depth; LightDepth::scale is light_depth.
 Snapshot stylized(const Snapshot& snapshot, const StyleSettings& style);
 
 // True if the fog's light fades with distance; the default range is infinite.

@@ -6,6 +6,7 @@
 #include "modes/path/path_rays.h"
 #include "modes/shared_limitations.h"
 #include "scene/scene.h"
+#include "support/expect.h"
 #include "support/limitations.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"
@@ -201,6 +202,21 @@ TEST(MeshLight, SurfacesGetWhatAlphaLeaves) {
         const RayEstimate seen = traced(stage.snapshot, {{0, 0.5f, 0}, {0, -1, 0}, 1}, 1 << 14, 1);
         EXPECT_NEAR(seen.value.y, expected, sigmas * seen.error.y) << emitter.name;
         EXPECT_LT(seen.error.y, 0.015 * expected) << emitter.name;
+    }
+}
+
+TEST(MeshLight, StyleTintsItInFog) {
+    const TestScene stage = glowing_stage({homogeneous_medium(0.5f, {vec3(-3), vec3(3)})});
+    const View view = view_of({0.3f, 0.4f, 4}, {0, 0, 0}, {8, 8});
+    const std::vector<Ray> rays = pixel_rays(view, stage.snapshot);
+    Settings plain, tinted;
+    tinted.style.tint = {0.5f, 1, 0};
+    for (const char* mode : {"march", "froxel", "shadow-map", "shadow-volume", "cone"}) {
+        const std::vector<Scatter> all = run_mode(mode, view, stage.snapshot, plain, rays);
+        const std::vector<Scatter> some = run_mode(mode, view, stage.snapshot, tinted, rays);
+        EXPECT_GT(mean_of(all), 0) << mode;
+        for (size_t i = 0; i < rays.size(); ++i)
+            expect_near(some[i].radiance, all[i].radiance * tinted.style.tint, 1e-5f * max_component(all[i].radiance));
     }
 }
 

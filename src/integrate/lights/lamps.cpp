@@ -8,7 +8,7 @@ float ball_radius(dvec3 spread) { return std::sqrt(5.0f / 3 * float(spread.x + s
 
 Snapshot with_lamps(const Snapshot& snapshot, const StyleSettings& style, const TermSettings& terms) {
     Snapshot lit = with_fire_lamps(with_mean_environment(with_terms(stylized(snapshot, style), terms)));
-    return with_mesh_lamps(std::move(lit), terms.emission);
+    return with_mesh_lamps(std::move(lit), style, terms.emission);
 }
 
 ScatterFunction with_lamps_as_emission(size_t lights, size_t all, ScatterFunction scatter) {

@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "integrate/lights/lamps.h"
+#include "integrate/style.h"
 #include "scene/light_filter.h"
 #include "scene/photometry/ies_file.h"
 #include "scene/photometry/ies_profile.h"
@@ -238,13 +239,13 @@ std::shared_ptr<const MeshLamps> mesh_lamps(const Snapshot& snapshot) {
                   [&] { return make_lamps(snapshot, *glow); });
 }
 
-Snapshot with_mesh_lamps(Snapshot snapshot, bool wanted) {
+Snapshot with_mesh_lamps(Snapshot snapshot, const StyleSettings& style, bool wanted) {
     const auto found = wanted ? mesh_lamps(snapshot) : nullptr;
     if (!found || found->lamps.empty()) return snapshot;
     const int casters = static_cast<int>(snapshot.casters.size());
     snapshot.casters.push_back(found->casters);
     for (Light lamp : found->lamps) {
-        lamp.casters = casters;
+        lamp.casters = casters, lamp.intensity *= style.tint;
         snapshot.lights.push_back(std::move(lamp));
     }
     return snapshot;

@@ -7,6 +7,8 @@
 #include <vector>
 
 namespace tyndall {
+struct StyleSettings;
+
 struct MeshLamps {
     // At most four, each at the power-weighted center of some meshes, with their directional intensity (including
     // self-shadowing). They illuminate only fog.
@@ -20,6 +22,6 @@ inline constexpr double lamps_tolerance = 0.1;
 // Lamps for the emissive surfaces of a snapshot; null if there are none.
 std::shared_ptr<const MeshLamps> mesh_lamps(const Snapshot& snapshot);
 
-// The snapshot with lamps for its emissive surfaces appended to its lights, if `wanted`.
-Snapshot with_mesh_lamps(Snapshot snapshot, bool wanted);
+// The snapshot with lamps for its emissive surfaces appended to its lights, in the style's tint, if `wanted`.
+Snapshot with_mesh_lamps(Snapshot snapshot, const StyleSettings& style, bool wanted);
 }

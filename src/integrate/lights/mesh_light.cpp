@@ -40,9 +40,9 @@ void append_path(const ScatteringFog& fog, const Ray& ray, const FogSampler& see
     const vec3 direction = offset / away;
     const double weight =
         extinction * transmittance * std::abs(glm::dot(target.normal, direction)) * fade_at(fog, there.point) / pdf;
-    const ScatterPath path{number,
-                           {there.point, direction, away * shadow_reach<float>},
-                           scattered(fog.media, there, direction).first * target.emission * static_cast<float>(weight)};
+    const vec3 light = scattered(fog.media, there, direction).first * target.emission * fog.style.tint;
+    const ScatterPath path{
+        number, {there.point, direction, away * shadow_reach<float>}, light * static_cast<float>(weight)};
     if (max_component(path.light) > 0) paths.push_back(path);
 }
 
