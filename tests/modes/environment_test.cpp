@@ -257,6 +257,30 @@ TEST(Environment, SurfacesAreLitAsByPaths) {
     }
 }
 
+// A white floor behind fog, lit by the surroundings: as bright as behind fog that absorbs as much and scatters nothing.
+TEST(Environment, PathTakesItOutOfFogAlone) {
+    const auto stage_of = [&](float albedo) {
+        TestScene stage = make_scene({homogeneous_medium(0.5f, {vec3(-1), vec3(1)}, {}, vec3(albedo))}, {},
+                                     {quad({-9, -9, -1.5f}, {18, 0, 0}, {0, 18, 0})}, vec3(0.3f));
+        stage.snapshot.environment = make_environment(half_sky());
+        return stage;
+    };
+    const TestScene white = stage_of(1), black = stage_of(0);
+    const Ray ray{{0.2f, 0.1f, 5}, {0, 0, -1}, 20};
+    Settings settings;
+    settings.path.orders = 1;
+    const auto light = [&](const TestScene& stage, const auto& part) {
+        return estimate_ray(find_mode("path").prepare(View{}, stage.snapshot, settings, nullptr), ray, 1 << 12, part);
+    };
+    const RayEstimate expected = light(black, surface_light);
+    EXPECT_GT(light(white, fog_light).value.x, 0.1);
+    settings.terms.ambient = false;
+    const RayEstimate found = light(white, surface_light);
+    EXPECT_EQ(light(white, fog_light).value.x, 0);
+    EXPECT_GT(expected.value.x, 0.1);
+    EXPECT_NEAR(found.value.x, expected.value.x, sigmas * std::hypot(found.error.x, expected.error.x));
+}
+
 TEST(Environment, ModesSayWhatTheyMissOfIt) {
     Snapshot snapshot = snapshot_of({homogeneous_medium(0.5f, unit_box)});
     auto named = std::make_shared<Environment>(*make_environment(half_sky()));

@@ -131,6 +131,8 @@ float gather_on_the_way(const PathState& state, Segment& line) {
     return before * passing({candidate.distance, line.end});
 }
 
+bool scatters_sky(const PathState& state) { return state.snapshot.environment && state.tracer.ambient_in_fog; }
+
 // Adds environment light that a medium scatters at a point of the line; `weight`: length that the point represents,
 // times transmittance.
 void gather_sky_by(const PathState& state, Segment& line, const FogPoint& fog, size_t medium, float weight) {
@@ -194,7 +196,7 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
         const float pdf = target.pdf * away * away + fog.phase_pdf(snapshot, cosine) * found;
         if (pdf > 0) queue(state, line, connection, fog.scattered(snapshot, cosine) * target.emission / pdf, in_fog);
     }
-    if (snapshot.environment) gather_sky_at_collision(state, line, fog);
+    if (scatters_sky(state)) gather_sky_at_collision(state, line, fog);
     if (!state.tracer.emitters) return;
     const EmissivePoint target = sample_triangles(*state.tracer.emitters, *snapshot.occluders,
                                                   line.numbers(use_light).y, line.numbers(use_glow));
@@ -235,9 +237,10 @@ void collide(const PathState& state, Segment& line) {
     gather_at_collision(state, line, nearest, fog, peak);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
     const float pdf = fog.phase_pdf(snapshot, glm::dot(direction, line.rest.direction));
-    const float sky_scale = state.tracer.finds_sky ? snapshot.environment->volume_scale : 0;
+    const bool ambient = state.tracer.ambient_in_fog, finds_sky = ambient && state.tracer.finds_sky;
+    const float sky_scale = finds_sky ? snapshot.environment->volume_scale : 0;
     const vec3 albedo = fog.albedo_of(optics, static_cast<size_t>(hit));
-    scatter(state, line, {{fog.position, direction}, albedo, pdf, sky_scale, peak}, in_fog);
+    scatter(state, line, {{fog.position, direction}, albedo, pdf, sky_scale, peak, ambient}, in_fog);
 }
 }
 
@@ -251,7 +254,7 @@ float line_transmittance(const PathState& state, Segment& line, Interval<float> 
 
 void follow_fog(const PathState& state, Segment& line) {
     gather_emission(state, line);
-    if (state.snapshot.environment) gather_sky_on_the_way(state, line);
+    if (scatters_sky(state)) gather_sky_on_the_way(state, line);
     const float passing = gather_on_the_way(state, line);
     if (line.unscattered) collide(state, line);
     line.transmittance *= passing;

@@ -31,8 +31,10 @@ bool finds_sky(const Snapshot& snapshot) {
 
 ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
     auto tracer = std::make_shared<PathTracer>();
-    tracer->snapshot = with_terms(snapshot, settings.terms);
-    tracer->settings = settings.path, tracer->surfaces_emit = settings.terms.emission;
+    TermSettings terms = settings.terms;
+    tracer->ambient_in_fog = std::exchange(terms.ambient, true);
+    tracer->snapshot = with_terms(snapshot, terms);
+    tracer->settings = settings.path, tracer->surfaces_emit = terms.emission;
     tracer->camera = view.camera, tracer->size = view.size;
     if (tracer->surfaces_emit) tracer->emitters = emissive_triangles(tracer->snapshot);
     tracer->fire = emissive_bricks(tracer->snapshot, Emitting::grids);

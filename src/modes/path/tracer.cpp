@@ -90,11 +90,12 @@ void bounce(const PathState& state, const Segment& line, const SurfacePoint& sur
 // Ambient light, and the environment's with its MIS weight against light sampling (balance heuristic).
 vec3 surroundings(const PathState& state, const Segment& line) {
     const PathVertex& from = line.vertex;
-    if (!(from.sky_scale > 0)) return state.snapshot.ambient;
+    const vec3 ambient = from.ambient ? state.snapshot.ambient : vec3(0);
+    if (!(from.sky_scale > 0)) return ambient;
     const Environment& environment = *state.snapshot.environment;
     const float aimed = environment_pdf(environment, from.ray.direction);
     const float weight = from.sky_scale * from.pdf / (from.pdf + aimed);
-    return state.snapshot.ambient + environment_radiance(environment, from.ray.direction) * weight;
+    return ambient + environment_radiance(environment, from.ray.direction) * weight;
 }
 
 // The line leaves the scene: adds the background for the eye, the surroundings for other lines.
@@ -219,6 +220,7 @@ void scatter(const PathState& state, const Segment& line, const ScatterEvent& ev
     PathVertex next = line.vertex;
     next.ray = event.ray, next.skip = 0, next.in_fog = in_fog;
     next.pdf = event.pdf, next.sky_scale = event.sky_scale, next.peak = event.peak;
+    next.ambient = event.ambient;
     next.throughput *= event.share;
     const float brightness = max_component(next.throughput);
     if (blind || !(brightness > 0)) return;

@@ -17,7 +17,8 @@ namespace tyndall {
 struct PathTracer {
     Snapshot snapshot;
     PathSettings settings;
-    bool surfaces_emit = true; // whether they illuminate fog and other surfaces
+    bool surfaces_emit = true;  // whether they illuminate fog and other surfaces
+    bool ambient_in_fog = true; // whether fog scatters light of the surroundings; surfaces always do
     Camera camera;
     ivec2 size{0};
     std::shared_ptr<const EmissiveTriangles> emitters; // emissive surfaces, for light sampling; null = none

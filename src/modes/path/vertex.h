@@ -41,6 +41,7 @@ struct PathVertex {
     float sky_scale = 0; // factor on environment light that the line finds; 0 = it does not look for it
     float peak = 0;      // of the phase function at its start, 1/sr, if the line looks for faces of lights; else 0
     bool in_fog = false; // the path's first event was in fog
+    bool ambient = true; // the line finds ambient light
     SampleIndex sample{0, 0};
     uint32_t id = 0;
 };
@@ -144,6 +145,7 @@ struct ScatterEvent {
     Ray ray;
     vec3 share{1};
     float pdf = 0, sky_scale = 0, peak = 0;
+    bool ambient = true;
 };
 
 // Starts the path's next line, unless Russian roulette ends the path.
