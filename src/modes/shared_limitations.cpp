@@ -6,6 +6,7 @@
 #include "scene/scene.h"
 #include "trace/fluence/light_paths.h"
 #include "trace/fog/motion.h"
+#include "trace/lights/emissive_triangles.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
@@ -176,14 +177,22 @@ void add_light_transmittance(const Snapshot& snapshot, LightTransmittance light,
     if (light == LightTransmittance::average) add(limitation::average_light);
 }
 
-void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettings& settings,
-                 Limitations& limitations) {
+namespace {
+// Whether fire or opaque surfaces light the fog.
+bool has_emitters(const Snapshot& snapshot) {
+    const auto fire = [](const Medium& medium) { return only_emits(medium.optics); };
+    return std::ranges::any_of(snapshot.media, fire) || emissive_triangles(snapshot);
+}
+}
+
+void add_fluence(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations) {
     add_unshadowed_ambient(snapshot, limitations);
     add_float_precision(view, snapshot, limitations);
     const auto is_endless = [](const Medium& medium) { return !is_finite(medium.world_bounds.size()); };
     const Box fog = fog_bounds(snapshot, light_reach(snapshot));
-    if (!has_lights(snapshot) || fog.empty()) return;
-    const float cell = max_component(fog.size()) / static_cast<float>(settings.resolution);
+    const bool lamps = settings.terms.emission && has_emitters(snapshot);
+    if (!(has_lights(snapshot) || lamps) || fog.empty()) return;
+    const float cell = max_component(fog.size()) / static_cast<float>(settings.fluence.resolution);
     const auto add = [&](const LimitationKind& kind, const char* row, double amount = 0,
                          Severity severity = Severity::info) {
         limitations.push_back({severity, &kind, Subject::setting, row, {amount}});
@@ -193,7 +202,8 @@ void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettin
     const bool surfaces = snapshot.occluders && snapshot.occluders->triangle_count() > 0;
     add(limitation::fog_scatters_alone, "fluence.orders", 0, surfaces ? Severity::degraded : Severity::info);
     if (std::ranges::any_of(snapshot.media, is_endless)) add(limitation::unbounded_fluence, "fluence.orders");
-    if (settings.orders < all_orders) add(limitation::orders_left_out, "fluence.orders", settings.orders);
+    const int orders = settings.fluence.orders;
+    if (orders < all_orders) add(limitation::orders_left_out, "fluence.orders", orders);
 }
 
 namespace {

@@ -2,11 +2,11 @@
 #pragma once
 #include "base/math.h"
 #include "modes/limitation.h"
-#include "trace/fluence/settings.h"
 #include "trace/transmittance/light_transmittance.h"
 
 namespace tyndall {
 struct Medium;
+struct Settings;
 struct Snapshot;
 struct View;
 
@@ -33,8 +33,9 @@ inline constexpr LimitationKind table_by_mean_cosine{
     "table_by_mean_cosine",
     "multiple scattering uses only the mean cosine of its phase function: at 90 degrees {} times the tabulated value"};
 inline constexpr LimitationKind fog_scatters_alone{
-    "fog_scatters_alone", "multiple scattering is computed for fog and lights only: surfaces receive only direct "
-                          "light, and ambient light and emission are not scattered further"};
+    "fog_scatters_alone", "multiple scattering is computed in fog only: surfaces receive only direct light; light of "
+                          "fire and emissive surfaces is scattered further as if from lamps, ambient light and "
+                          "emission that follows the density are not"};
 inline constexpr LimitationKind unbounded_fluence{
     "unbounded_fluence", "in unbounded fog, multiple scattering is computed in and around the scene only"};
 inline constexpr LimitationKind orders_left_out{"orders_left_out", "scattering orders above {n} are ignored"};
@@ -92,7 +93,7 @@ inline constexpr float dark_depth = 2;
 void add_light_transmittance(const Snapshot& snapshot, LightTransmittance light, Limitations& limitations);
 
 // Reports what a fluence grid for multiple scattering cannot show, unshadowed ambient light, and float precision.
-void add_fluence(const View& view, const Snapshot& snapshot, const FluenceSettings& settings, Limitations& limitations);
+void add_fluence(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations);
 
 // Reports what holds in every mode: the time samples of motion blur, volumes that do not move within them, and suns
 // whose disc would show in a narrow phase function.

@@ -220,6 +220,23 @@ TEST(MeshLight, StyleTintsItInFog) {
     }
 }
 
+// As light of paths that scatter more than once, in the mean of some rays: lamps and cells blur it, but keep its sum.
+TEST(MeshLight, MarchScattersItFurther) {
+    const TestScene stage = glowing_stage({homogeneous_medium(0.5f, {vec3(-3), vec3(3)}, {}, vec3(0.9f))});
+    Settings once, all;
+    all.fluence.orders = all_orders;
+    const Limitations said = find_mode("march").limitations(View{}, stage.snapshot, all);
+    EXPECT_TRUE(has_limitation(said, limitation::cached_fluence));
+    EXPECT_TRUE(has_limitation(said, limitation::fog_scatters_alone));
+    double march = 0, paths = 0;
+    for (const Ray& ray : {Ray{{0, -1, 4}, {0, 0, -1}, 8}, Ray{{-1.5f, -0.5f, 4}, {0, 0, -1}, 8},
+                           Ray{{4, 0.5f, -1}, {-1, 0, 0}, 8}, Ray{{4, 2, 1}, {-1, 0, 0}, 8}}) {
+        march += double{marched(stage.snapshot, all, ray).radiance.y - marched(stage.snapshot, once, ray).radiance.y};
+        paths += double{traced(stage.snapshot, ray, 1 << 13).value.y - traced(stage.snapshot, ray, 1 << 13, 1).value.y};
+    }
+    EXPECT_NEAR(march / paths, 1, 0.05);
+}
+
 TEST(MeshLight, ModesSayWhatBecomesOfIt) {
     const View view = view_of({0.3f, 0.4f, 4}, {0, 0, 0});
     std::vector<Emitter> emitters{{}, {"clear", AlphaMode::blend, 0}};

@@ -47,7 +47,7 @@ Limitations march_limitations(const View& view, const Snapshot& snapshot, const 
     if (settings.fluence.orders < 2)
         add_single_scattering(view, snapshot, limitations);
     else
-        add_fluence(view, snapshot, settings.fluence, limitations);
+        add_fluence(view, snapshot, settings, limitations);
     const bool no_froxels = terms.light == LightTransmittance::froxel && view.camera.lens;
     if (terms.light == LightTransmittance::grid || no_froxels)
         add_light_grid_cells(snapshot, terms.light_resolution, limitations);

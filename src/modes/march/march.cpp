@@ -1,6 +1,8 @@
 // The main renderer: single scattering by ray marching with shadows, attenuation of light by fog and steps adapted to
 // the fog, plus cached multiple scattering.
 #include "integrate/lights/field_light.h"
+#include "integrate/lights/fire_lamps.h"
+#include "integrate/lights/mesh_lamps.h"
 #include "integrate/lights/path_lights.h"
 #include "integrate/style.h"
 #include "modes/map_shadows.h"
@@ -40,6 +42,14 @@ void add_steps(const MarchSettings& march, bool all, SingleScattering& fog) {
     fog.sampled = has_grid(fog.snapshot) || !lights.empty();
     fog.rule = march_steps(march, std::move(lights));
 }
+
+// Cached multiple scattering of all light; that of fire and emissive surfaces scatters further as if from lamps.
+std::shared_ptr<const FluenceGrid> fluence_of(const View& view, const Snapshot& snapshot, const Settings& settings) {
+    if (settings.fluence.orders < 2) return nullptr;
+    Snapshot lit = with_mesh_lamps(with_fire_lamps(snapshot), settings.style, settings.terms.emission);
+    take_fields(lit, settings.style, view.camera);
+    return cached_fluence(lit, settings.fluence, view.seed);
+}
 }
 
 ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const Settings& settings, History*) {
@@ -54,8 +64,8 @@ ScatterFunction prepare_march(const View& view, const Snapshot& snapshot, const 
     append_fire_light(fog->snapshot, scattering, shadows, sampled);
     if (settings.terms.emission) append_mesh_light(fog->snapshot, scattering, shadows, sampled);
     append_environment_light(fog->snapshot, scattering, shadows, sampled);
+    fog->fluence = fluence_of(view, fog->snapshot, settings);
     FieldLight fields = take_fields(fog->snapshot, settings.style, view.camera);
-    fog->fluence = cached_fluence(fog->snapshot, settings.fluence, view.seed);
     take_area_lights(fog->snapshot, scattering, shadows, sampled);
     fog->nodes = march.nodes, fog->light_points = settings.terms.light_points;
     fog->opaque = fields.opaque = march.min_transmittance > 0 ? -std::log(march.min_transmittance) : infinity;
