@@ -286,8 +286,9 @@ TEST(Environment, ModesSayWhatTheyMissOfIt) {
     auto named = std::make_shared<Environment>(*make_environment(half_sky()));
     named->name = "sky";
     snapshot.environment = named;
+    Settings settings;
     const auto amount = [&](const char* mode, const LimitationKind& kind) {
-        for (const Limitation& one : find_mode(mode).limitations(View{}, snapshot, Settings{}))
+        for (const Limitation& one : find_mode(mode).limitations(View{}, snapshot, settings))
             if (one.is(kind) && one.name == "sky") return one.amounts;
         return std::array{-1.0, -1.0};
     };
@@ -301,6 +302,9 @@ TEST(Environment, ModesSayWhatTheyMissOfIt) {
         EXPECT_EQ(amount(mode, limitation::mean_environment)[0], -1) << mode;
         EXPECT_EQ(amount(mode, limitation::environment_left_out)[0], -1) << mode;
     }
+    settings.terms.ambient = false; // nothing is missed of what is left out on purpose
+    for (const char* mode : {"froxel", "shadow-map", "shadow-volume", "cone"})
+        EXPECT_EQ(amount(mode, limitation::mean_environment)[0], -1) << mode;
 }
 
 // As E has it: over all pixels, of light that scatters forwards, past a wall.

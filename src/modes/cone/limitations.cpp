@@ -48,7 +48,7 @@ Limitations cone_limitations(const View& view, const Snapshot& snapshot, const S
     if (settings.of<ConeSettings>().resolution != Resolution::full)
         add_no_fog_picture(view, "cone.resolution", limitations);
     if (view.has_history) add_moving_fog(snapshot, limitations);
-    add_mean_environment(view, snapshot, limitations);
+    if (settings.terms.ambient) add_mean_environment(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
     add_mean_albedo(snapshot, limitations), add_mean_emission(snapshot, limitations);
     if (settings.terms.emission) {

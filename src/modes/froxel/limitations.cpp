@@ -119,7 +119,7 @@ Limitations froxel_limitations(const View& view, const Snapshot& snapshot, const
     std::erase_if(limitations, [](const Limitation& one) { return one.is(limitation::sampled_gobo); });
     if (snapshot.media.empty()) return limitations;
     add_fog_through_middle(view, snapshot, limitations);
-    add_mean_environment(view, snapshot, limitations);
+    if (settings.terms.ambient) add_mean_environment(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
     if (settings.terms.emission)
         add_lamps_for_fire(snapshot, limitations), add_lamps_for_surfaces(view, snapshot, limitations);

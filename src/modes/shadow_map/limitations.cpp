@@ -59,7 +59,7 @@ Limitations shadow_map_limitations(const View& view, const Snapshot& snapshot, c
     if (own.fog_resolution != Resolution::full) add_no_fog_picture(view, "shadow_map.fog_resolution", limitations);
     if (own.blur) add_no_fog_picture(view, "shadow_map.blur", limitations);
     if (view.has_history) add_moving_shadows(snapshot, limitations), add_moving_fog(snapshot, limitations);
-    add_mean_environment(view, snapshot, limitations);
+    if (settings.terms.ambient) add_mean_environment(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
     if (settings.terms.emission)
         add_lamps_for_fire(snapshot, limitations), add_lamps_for_surfaces(view, snapshot, limitations);

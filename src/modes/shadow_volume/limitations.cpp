@@ -34,7 +34,8 @@ void add_fog(const View& view, const Snapshot& snapshot, const Settings& setting
         add_out_of_gamut(snapshot, limitations), add_lamps_for_fire(snapshot, limitations);
         add_lamps_for_surfaces(view, snapshot, limitations);
     }
-    add_single_scattering(view, snapshot, limitations), add_mean_environment(view, snapshot, limitations);
+    if (settings.terms.ambient) add_mean_environment(view, snapshot, limitations);
+    add_single_scattering(view, snapshot, limitations);
     add_lamps_for_faces(view, snapshot, limitations);
 }
 
