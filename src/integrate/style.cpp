@@ -2,6 +2,7 @@
 #include "scene/light.h"
 #include "trace/lights/environment.h"
 #include "volume/bricks/bricks.h"
+#include "volume/emission/emission_field.h"
 #include "volume/medium.h"
 
 namespace tyndall {
@@ -24,6 +25,9 @@ Medium at_mean_density(const Medium& medium) {
 void drop_clear(std::vector<Medium>& media) {
     std::erase_if(media, [](const Medium& medium) { return !(gray_extinction(medium.optics) > 0); });
 }
+
+// All media do but fields that emit independently of what absorbs.
+bool follows_density(const Optics& optics) { return !only_emits(optics) || optics.emission.field->absorber; }
 }
 
 bool is_stylized(const StyleSettings& a) {
@@ -35,9 +39,10 @@ bool is_stylized(const StyleSettings& a) {
 Snapshot stylized(const Snapshot& snapshot, const StyleSettings& style) {
     Snapshot result = snapshot;
     for (Medium& medium : result.media) {
-        medium.optics.extinction *= style.density;
-        medium.optics.emission.radiance *= style.density * style.tint;
-        medium.optics.emission.scale *= style.density * style.tint;
+        const float factor = follows_density(medium.optics) ? style.density : 1.0f;
+        medium.optics.extinction *= factor;
+        medium.optics.emission.radiance *= factor * style.tint;
+        medium.optics.emission.scale *= factor * style.tint;
     }
     drop_clear(result.media);
     for (Light& light : result.lights) light.intensity *= style.tint;

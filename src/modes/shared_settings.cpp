@@ -83,8 +83,9 @@ void append_style_rows(std::vector<SettingRow>& rows) {
         "style.view_depth", "", 0, 10,
         "factor on the optical depth between fog and camera, for the fog's own light; above 1, shafts are clearer",
         TYNDALL_FIELD(style.view_depth)));
-    rows.push_back(
-        number_row("style.density", "", 0, 1000, "factor on every medium's extinction", TYNDALL_FIELD(style.density)));
+    rows.push_back(number_row("style.density", "", 0, 1000,
+                              "factor on every medium's extinction, and on emission that follows its density",
+                              TYNDALL_FIELD(style.density)));
     rows.push_back(
         number_row("style.range", "m", 1e-6, 1e9,
                    "distance from the camera at which the fog's light has faded out, over the last fifth of it",

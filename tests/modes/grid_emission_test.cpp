@@ -93,6 +93,20 @@ TEST(GridEmission, AbsorbingBoxIsItsClosedForm) {
                  "kelvin as it absorbs");
 }
 
+TEST(GridEmission, StyleDensityBrightensOnlyWhatAbsorbs) {
+    const TempFolder scratch;
+    for (const BlackbodyKind kind : {BlackbodyKind::kelvin, BlackbodyKind::pbrt})
+        for (const float density : {0.0f, 3.0f}) {
+            Scene scene;
+            Settings settings;
+            const Snapshot plain = without_scattering(snapshot_with(scene, glowing(scratch, kind, 1e-4f)));
+            const float once = marched(plain, settings, inside).radiance.x;
+            settings.style.density = density;
+            const float factor = kind == BlackbodyKind::pbrt ? density : 1;
+            EXPECT_NEAR(marched(plain, settings, inside).radiance.x / once, factor, 1e-3f); // 3e-4 optical depths
+        }
+}
+
 // Nearly all places on a line through thick smoke are hidden in it: picked there alone, this would be 1.5 of noise.
 TEST(GridEmission, InThickSmokePathsSeeWhatTheyCollideWith) {
     const TempFolder scratch;
