@@ -105,8 +105,16 @@ bool at_eye(const Camera& camera, const Ray& ray) {
     return ray.origin == camera.position;
 }
 
+// A ray's length, at most that of the buffer's: open rays may come with that of another channel's fog.
+float length_in_fog(std::span<const Medium> media, const RayBatch& batch, size_t i) {
+    const Ray& ray = batch.rays[i];
+    const bool open = !batch.open.empty() && batch.open[i];
+    return open ? std::min(fog_reach(media, {ray.origin, ray.direction, infinity}), ray.t_max) : ray.t_max;
+}
+
 // Interpolates rays from the buffer; those it cannot answer are evaluated together.
-void look_up(const FogBuffer& buffer, const ScatterFunction& whole, const RayBatch& batch, std::span<Scatter> results) {
+void look_up(const FogBuffer& buffer, std::span<const Medium> media, const ScatterFunction& whole,
+             const RayBatch& batch, std::span<Scatter> results) {
     const vec2 scale = vec2(buffer.fog.size) / vec2(buffer.view.size);
     const size_t part_count = batch.rays.empty() ? 0 : batch.parts.size() / batch.rays.size();
     size_t missed[16];
@@ -116,7 +124,7 @@ void look_up(const FogBuffer& buffer, const ScatterFunction& whole, const RayBat
         const Ray& ray = batch.rays[i];
         const bool known = !batch.positions.empty() && at_eye(buffer.view.camera, ray);
         Taps taps = taps_at(buffer.fog.size, known ? batch.positions[i] * scale : vec2(0));
-        const Mixed fog = known ? mixed(buffer, taps, ray.t_max) : Mixed{};
+        const Mixed fog = known ? mixed(buffer, taps, length_in_fog(media, batch, i)) : Mixed{};
         if (!(fog.weight >= min_weight) || part_count != buffer.parts.size()) {
             missed[count++] = i;
             continue;
@@ -163,8 +171,7 @@ ScatterFunction from_fog_buffer(const View& view, const Snapshot& snapshot, cons
             accumulate_fog(*history->buffer, snapshot.media, *buffer);
         history->buffer = buffer;
     }
-    return [buffer, whole = std::move(whole)](const RayBatch& batch, std::span<Scatter> results) {
-        look_up(*buffer, whole, batch, results);
-    };
+    return [buffer, media = snapshot.media, whole = std::move(whole)](
+               const RayBatch& batch, std::span<Scatter> results) { look_up(*buffer, media, whole, batch, results); };
 }
 }

@@ -162,6 +162,32 @@ TEST(FogBuffer, RaysThatNothingEndsStayOpen) {
     }
 }
 
+// Open rays of a frame end where the fog of no channel reaches, the buffer's where that of its own does.
+TEST(FogBuffer, OpenRaysBeyondItsFogAreInIt) {
+    const View view = small_view();
+    const Snapshot snapshot = snapshot_of({homogeneous_medium(0.3f)}, {});
+    int calls = 0;
+    const ScatterFunction whole = [&](const RayBatch& batch, std::span<Scatter> results) {
+        calls += static_cast<int>(batch.rays.size());
+        std::ranges::fill(results, Scatter{});
+    };
+    const ScatterFunction spread = from_fog_buffer(view, snapshot, {}, whole, nullptr);
+    const Seen seen = camera_rays(view, 1000, 30);
+    const bool open[2] = {true, false};
+    const uint32_t id = 1;
+    for (size_t i = 0; i < seen.rays.size(); ++i) {
+        calls = 0;
+        Scatter result;
+        const bool far = seen.rays[i].t_max == 1000;
+        spread({.rays = {&seen.rays[i], 1},
+                .ids = {&id, 1},
+                .positions = {&seen.positions[i], 1},
+                .open = {&open[far ? 0 : 1], 1}},
+               {&result, 1});
+        ASSERT_EQ(calls, far ? 0 : 1) << i;
+    }
+}
+
 TEST(FogBuffer, LightsAddUp) {
     View view = small_view();
     view.fog_parts = true;
