@@ -1,6 +1,5 @@
 #include "trace/fog/grids.h"
 
-#include "base/error.h"
 #include "base/text.h"
 #include "scene/scene.h"
 #include "trace/fog/media.h"
@@ -54,12 +53,8 @@ EmissionPart blackbody_part(const MediumSource& source, double seconds, const Me
     return part_of(std::move(field), grids.temperature.channels[0].index_to_world, source.name);
 }
 
-EmissionPart colored_part(const Scene& scene, const MediumSource& source, const MediumGrids& grids) {
+EmissionPart colored_part(const MediumSource& source, const MediumGrids& grids) {
     if (!grids.emission) return {};
-    for (const PlacedBricks& channel : grids.emission.channels)
-        if (channel.index_to_world != grids.emission.channels[0].index_to_world)
-            refuse(scene.file.string(),
-                   named("medium", source.name) + ": its three emission grids have different transforms");
     EmissionField field;
     field.source = bricks_of(grids.emission);
     return part_of(std::move(field), grids.emission.channels[0].index_to_world, source.name);
@@ -162,7 +157,7 @@ std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Mome
             grids->color = std::make_shared<const AlbedoField>(std::move(color));
         }
         if (source.blackbody) grids->blackbody = blackbody_part(source, moment.seconds, *grids, fog);
-        grids->colored = colored_part(*snapshot.scene, source, *grids);
+        grids->colored = colored_part(source, *grids);
     }
     place_grids(matrix, fog, *grids);
     return grids;

@@ -44,11 +44,12 @@ std::shared_ptr<const BrickPool> placed(const BrickPool& pool, const dmat4& inde
 
 VelocityField make_velocity_field(VelocityVolume volume) {
     VelocityField field;
-    if (std::ranges::any_of(volume.components, &SparseVolume::empty)) return field;
+    if (std::ranges::all_of(volume.components, &SparseVolume::empty)) return field;
     vec3 greatest(0);
     std::shared_ptr<const BrickPool> known;
     for (size_t c = 0; c < 3; ++c) {
         SparseVolume& component = volume.components[c];
+        if (component.empty()) continue;
         const SparseVolume& mask = volume.known[volume.known.size() == 3 ? c : 0];
         const Interval<float> range = range_of(component, mask);
         const auto axis = static_cast<glm::length_t>(c);
@@ -56,9 +57,10 @@ VelocityField make_velocity_field(VelocityVolume volume) {
         greatest[axis] = std::max(std::abs(range.low), std::abs(range.high));
         field.index_to_world[c] = component.index_to_world;
         normalize(mask, range.low, range.high - range.low, component);
-        if (c == 0 || volume.known.size() == 3) known = make_bricks(mask);
+        if (!known || volume.known.size() == 3) known = make_bricks(mask);
         field.components[c] = make_bricks(component), field.known[c] = known;
     }
+    if (!volume.any.empty()) field.any = make_bricks(volume.any), field.any_to_world = volume.any.index_to_world;
     field.fastest = glm::length(greatest);
     return field;
 }
@@ -66,7 +68,9 @@ VelocityField make_velocity_field(VelocityVolume volume) {
 LocalVelocity::LocalVelocity(const VelocityField& field, const dmat4& index_to_world)
     : low_(field.low), range_(field.range), to_index_(glm::inverse(glm::dmat3(index_to_world))) {
     const dmat4 to_index = glm::inverse(index_to_world);
+    if (field.any) any_ = placed(*field.any, to_index * field.any_to_world);
     for (size_t c = 0; c < 3; ++c) {
+        if (!field.known[c]) continue;
         const dmat4 place = to_index * field.index_to_world[c];
         components_[c] = placed(*field.components[c], place);
         const bool same =
@@ -76,16 +80,20 @@ LocalVelocity::LocalVelocity(const VelocityField& field, const dmat4& index_to_w
 }
 
 bool LocalVelocity::at(vec3 point, vec3& velocity) const {
-    vec3 share;
+    vec3 share(infinity);
     for (glm::length_t c = 0; c < 3; ++c) {
         const auto i = static_cast<size_t>(c);
-        share[c] = c > 0 && known_[i] == known_[0] ? share[0] : sample_density(*known_[i], point);
-        if (!(share[c] > min_share)) return false;
+        if (known_[i]) share[c] = c > 0 && known_[i] == known_[0] ? share[0] : sample_density(*known_[i], point);
     }
-    vec3 in_world;
+    const float all = any_ ? sample_density(*any_, point) : glm::min(share.x, glm::min(share.y, share.z));
+    if (!(all > min_share)) return false;
+    vec3 in_world(0);
     for (glm::length_t c = 0; c < 3; ++c) {
-        const float part = range_[c] > 0 ? sample_density(*components_[static_cast<size_t>(c)], point) / share[c] : 0;
+        const auto i = static_cast<size_t>(c);
+        if (!known_[i] || !(share[c] > 0)) continue;
+        const float part = range_[c] > 0 ? sample_density(*components_[i], point) / share[c] : 0;
         in_world[c] = low_[c] + range_[c] * part;
+        if (any_) in_world[c] *= share[c] / all;
     }
     velocity = to_index_ * in_world;
     return true;

@@ -10,8 +10,10 @@ struct BrickPool;
 
 // Velocities in the file's units of length and time, trilinear between known voxels.
 struct VelocityField {
-    std::array<std::shared_ptr<const BrickPool>, 3> components; // (velocity - low) / range, 0 where unknown
-    std::array<std::shared_ptr<const BrickPool>, 3> known;      // 1 at known voxels; on the voxels of the component
+    std::array<std::shared_ptr<const BrickPool>, 3> components; // (velocity - low) / range, 0 where unknown; ...
+    std::array<std::shared_ptr<const BrickPool>, 3> known; // 1 at its known voxels; both null: 0 wherever others are
+    std::shared_ptr<const BrickPool> any;                  // 1 where at least one is known, the others 0; null: ...
+    dmat4 any_to_world{1};                                 // ... only where all are
     std::array<dmat4, 3> index_to_world{dmat4(1), dmat4(1), dmat4(1)};
     vec3 low{0}, range{0};
     float fastest = 0; // upper bound of the speed; 0 = nothing moves
@@ -30,6 +32,7 @@ public:
 
 private:
     std::array<std::shared_ptr<const BrickPool>, 3> components_, known_;
+    std::shared_ptr<const BrickPool> any_;
     vec3 low_, range_;
     mat3 to_index_;
 };

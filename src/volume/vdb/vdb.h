@@ -113,10 +113,10 @@ SparseVolume read_vdb(const std::filesystem::path& file, const std::string& grid
 // A color from a vector grid, three scalar grids, or one scalar grid for all channels.
 struct ColorVolume {
     std::vector<SparseVolume> channels; // three, or one for all; 0 where `coverage` is 0
-    SparseVolume coverage;              // 1 at active voxels
+    SparseVolume coverage;              // 1 at voxels that are active in any grid
 };
 // `grids`: one name or three. A name that does not exist stands for name.x, name.y and name.z if these do. Values above
-// `most` are clamped and counted. Throws Error like read_vdb().
+// `most` are clamped and counted. Three grids need the same transform. Throws Error like read_vdb().
 ColorVolume read_color_vdb(const std::filesystem::path& file, std::span<const std::string> grids, const ValueMap& map,
                            float most, VdbReadReport* report);
 
@@ -124,8 +124,10 @@ ColorVolume read_color_vdb(const std::filesystem::path& file, std::span<const st
 struct VelocityVolume {
     std::array<SparseVolume, 3> components; // signed; on separate voxel grids if staggered
     std::vector<SparseVolume> known;        // 1 at known voxels: one for all components, or one each
+    SparseVolume any;                       // 1 where any component is known, if `known` differ; else empty
 };
-// `grids` as for a color; a single scalar grid is refused. Nonfinite values are set to 0 and counted.
+// `grids` as for a color, with any transforms; a single scalar grid is refused. Nonfinite values are set to 0 and
+// counted.
 VelocityVolume read_velocity_vdb(const std::filesystem::path& file, std::span<const std::string> grids,
                                  const ValueMap& map, VdbReadReport* report);
 

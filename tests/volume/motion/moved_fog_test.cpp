@@ -187,6 +187,28 @@ TEST(VelocityGrids, MayBeThreeOfNumbers) {
                 HasSubstr("one number per voxel"));
 }
 
+// A simulation in two dimensions leaves one of the three grids empty, and others prune what is 0.
+TEST(VelocityGrids, AComponentIs0WhereOnlyOthersAreKnown) {
+    std::vector<testing::AuthoredGrid> grids;
+    for (const char* name : {"vel.x", "vel.y", "vel.z"}) grids.push_back(grid_of(name, "float"));
+    for (int i = 0; i < 8 * 8 * 16; ++i) {
+        const ivec3 voxel(i / 128, i / 16 % 8, i % 16);
+        grids[1].voxels.emplace_back(voxel, -4.0f);
+        if (voxel.z >= 10) grids[2].voxels.emplace_back(voxel, voxel.z < 12 ? 5.0f : 6.0f);
+    }
+    for (const float shift : {0.0f, 9.0f}) { // an empty grid lies nowhere
+        grids[0].index_to_world[3][0] = double{shift};
+        const LocalVelocity velocity(read_field(grids, {"vel"}), dmat4(1));
+        for (const vec2 known : {vec2(4, 0), vec2(9, 0), vec2(9.5f, 2.5f), vec2(10, 5), vec2(13, 6)}) {
+            vec3 v;
+            ASSERT_TRUE(velocity.at(vec3(4, 4, known.x), v)) << known.x;
+            expect_near(v, vec3(0, -4, known.y), 0.01f);
+        }
+    }
+    grids[2].voxels.clear(), grids[1].voxels.clear();
+    EXPECT_EQ(read_field(grids, {"vel"}).fastest, 0);
+}
+
 TEST(VelocityGrids, WhatIsNotFiniteIsSetTo0AndSaid) {
     testing::AuthoredGrid grid = grid_of("vel", "vec3s");
     for (int i = 0; i < 64; ++i) grid.colors.emplace_back(ivec3(i / 16, i / 4 % 4, i % 4), vec3(3));

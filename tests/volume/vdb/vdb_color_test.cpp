@@ -85,6 +85,31 @@ TEST(VdbColor, ThreeGridsOfNumbersAreOneColor) {
                 HasSubstr("holds int32 values, not a color per voxel"));
 }
 
+// A red flame leaves the other two grids inactive: its color is red, not white.
+TEST(VdbColor, AVoxelThatIsActiveInAnyGridHasAColor) {
+    AuthoredGrid x = grid_of("Cd.x", "float", {{{0, 0, 9}, 0.5f}}), y = grid_of("Cd.y", "float", {{{0, 0, 8}, 0.25f}}),
+                 z = grid_of("Cd.z", "float");
+    z.tiles = {{{0, 0, 0}, 1, 0.75f}, {{0, 0, 128}, 2, 0.75f}};
+    y.voxels.push_back({{0, 0, 1}, 0.25f}), x.tiles = {{{0, 0, 136}, 1, 0.5f}};
+    VdbReadReport report;
+    const ColorVolume color = color_of(authored({x, y, z}), {"Cd"}, &report);
+    const auto at = [&](int c, int k) { return value_at(color.channels[static_cast<size_t>(c)], {0, 0, k}); };
+    for (const int covered : {1, 5, 8, 9, 130, 140, 255})
+        EXPECT_EQ(value_at(color.coverage, {0, 0, covered}), 1) << covered;
+    for (const int bare : {10, 127, 256}) EXPECT_EQ(value_at(color.coverage, {0, 0, bare}), 0) << bare;
+    EXPECT_THAT((std::vector{at(0, 8), at(1, 8), at(2, 8)}), ElementsAre(0, 0.25f, 0));
+    EXPECT_THAT((std::vector{at(0, 1), at(1, 1), at(2, 1)}), ElementsAre(0, 0.25f, 0.75f));
+    EXPECT_THAT((std::vector{at(0, 140), at(1, 140), at(2, 140)}), ElementsAre(0.5f, 0, 0.75f));
+
+    z.tiles.clear();
+    color_of(authored({x, y, z}), {"Cd"}, &report);
+    EXPECT_EQ(report.summary(), "") << "only one of the grids is empty";
+    color_of(authored({z, z, z}), {"Cd.z", "Cd.z", "Cd.z"}, &report);
+    EXPECT_THAT(report.summary(), HasSubstr("is empty"));
+    y.index_to_world[3][0] = 1;
+    EXPECT_THAT(refused(authored({x, y, z}), {"Cd"}), EndsWith("the three grids of a color have different transforms"));
+}
+
 TEST(VdbColor, RefusalsNameTheQuantityAndOfferWhatCanBeUsed) {
     const TempFolder scratch;
     const auto file = scratch.put("in.vdb", authored({grid_of("heat", "float"), grid_of("vel", "vec3i")}));
