@@ -1,8 +1,8 @@
 #include "volume/vdb/codec.h"
 
-#include "base/error.h"
 #include "base/io/file.h"
 #include "volume/vdb/head.h"
+#include "volume/vdb/library_errors.h"
 #include "volume/vdb/stream.h"
 #include "volume/vdb/tree_order.h"
 
@@ -12,92 +12,10 @@
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
-#include <new>
 #include <sstream>
 
 namespace tyndall {
 namespace {
-// Converts library exceptions: their messages can be gigabytes long, and running out of memory has its own exit code.
-template<class Body> auto guarded(ExitCode code, const std::string& where, const Body& body) {
-    try {
-        return body();
-    } catch (const std::bad_alloc&) {
-        fail(ExitCode::out_of_memory, where, "does not fit into memory");
-    } catch (const Error&) {
-        throw;
-    } catch (const std::exception& error) {
-        fail(code, where, "OpenVDB error: " + printable(error.what(), 160));
-    }
-}
-
-constexpr size_t max_tiles = size_t{1} << 26; // a few bytes in a file can expand to thousands of tiles
-
-ivec3 point(const openvdb::Coord& coord) { return {coord.x(), coord.y(), coord.z()}; }
-
-// A value as three numbers; scalars use only the first.
-dvec3 numbers_of(double value) { return {value, 0, 0}; }
-template<class T> dvec3 numbers_of(const openvdb::math::Vec3<T>& value) { return {value[0], value[1], value[2]}; }
-
-// Appends a tile of any level to the active tiles, or to the inactive ones if its value is nonzero.
-template<class Iterator> void append_tile(const Iterator& at, bool active, int component, DecodedTree& result) {
-    const openvdb::CoordBBox box = at.getBoundingBox();
-    const Tile tile{point(box.min()), point(box.max()), static_cast<float>(numbers_of(at.getValue())[component])};
-    if (active)
-        result.active_tiles.push_back(tile);
-    else if (tile.value != 0)
-        result.inactive_tiles.push_back(tile);
-}
-
-template<class Tree> void append_tiles(const Tree& tree, int component, DecodedTree& result) {
-    auto on = tree.cbeginValueOn();
-    on.setMaxDepth(Tree::ValueOnCIter::LEAF_DEPTH - 1);
-    for (; on; ++on) append_tile(on, true, component, result);
-    auto off = tree.cbeginValueOff();
-    off.setMaxDepth(Tree::ValueOffCIter::LEAF_DEPTH - 1);
-    for (; off; ++off) append_tile(off, false, component, result);
-}
-
-// The tree gives the positions of the leaves; their values are decoded in parallel, bypassing the library's tree.
-template<class Tree>
-void append_leaves(const Tree& tree, std::string_view bytes, std::span<const uint64_t> begins, const LeafCoding& coding,
-                   DecodedTree& result) {
-    std::vector<const typename Tree::LeafNodeType*> nodes;
-    nodes.reserve(begins.size());
-    tree.getNodes(nodes);
-    if (nodes.size() != begins.size()) throw std::runtime_error("the tree has the wrong number of leaves");
-    result.leaves.reserve(nodes.size());
-    for (const auto* node : nodes) result.leaves.emplace_back(Unfilled{}).origin = point(node->origin());
-    result.active.resize(nodes.size());
-    decode_leaves(bytes, begins, coding, result.leaves, result.active);
-}
-
-// The tree is read from an in-memory stream that throws on errors, so nothing is memory-mapped or loaded lazily. Grids
-// come from the library's registry: creating them here would compile every member of every tree type.
-template<class Grid>
-DecodedTree decoded(std::string_view bytes, const VdbGridEntry& entry, const VdbTreeCounts& counts, LeafCoding coding) {
-    openvdb::initialize();
-    const openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid("Tree_" + entry.type + "_5_4_3");
-    const size_t topology_end = counts.leaf_begins.empty() ? bytes.size() : counts.leaf_begins.front();
-    {
-        ByteSource source(bytes);
-        std::istream stream(&source);
-        stream.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
-        openvdb::io::setVersion(stream, openvdb::VersionId(0, 0), coding.file_version);
-        openvdb::io::setDataCompression(stream, entry.compression);
-        grid->setSaveFloatAsHalf(entry.half);
-        grid->readTopology(stream);
-        if (source.taken() != topology_end) throw std::runtime_error("the tree has the wrong length");
-    }
-    const auto& tree = static_cast<const Grid&>(*grid).tree();
-    DecodedTree result;
-    coding.background = numbers_of(tree.background());
-    result.background = static_cast<float>(coding.background[coding.component]);
-    for (auto at = tree.root().cbeginChildAll(); at; ++at) result.root_nodes.push_back(point(at.getCoord()));
-    append_tiles(tree, coding.component, result);
-    append_leaves(tree, bytes, counts.leaf_begins, coding, result);
-    return result;
-}
-
 void fill_tiles(openvdb::FloatTree& tree, const std::vector<Tile>& tiles, bool half) {
     for (const Tile& tile : tiles) {
         const float value = stored_value(tile.value, half);
@@ -111,7 +29,8 @@ void fill_tiles(openvdb::FloatTree& tree, const std::vector<Tile>& tiles, bool h
 Leaves leaves_of_tiles(const openvdb::FloatTree& tree) {
     Leaves leaves;
     for (auto node = tree.cbeginLeaf(); node; ++node) {
-        Leaf& leaf = leaves.emplace_back(Leaf{point(node->origin())});
+        const openvdb::Coord origin = node->origin();
+        Leaf& leaf = leaves.emplace_back(Leaf{{origin.x(), origin.y(), origin.z()}});
         for (openvdb::Index v = 0; v < 512; ++v) leaf.values[v] = node->getValue(v);
     }
     return leaves;
@@ -203,21 +122,6 @@ void write_grid(std::ostream& stream, uint64_t before, openvdb::GridBase& grid, 
 }
 }
 
-DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const VdbTreeCounts& counts,
-                        uint32_t file_version, const std::string& where, int component) {
-    LeafCoding coding{file_version, grid.compression, grid.half, LeafValue::single, component, dvec3(0)};
-    const auto as = [&]<class Grid>(LeafValue value, std::type_identity<Grid>) {
-        coding.value = value;
-        return decoded<Grid>(bytes, grid, counts, coding);
-    };
-    return guarded(ExitCode::refused, where, [&] {
-        if (grid.type == "vec3s") return as(LeafValue::three_single, std::type_identity<openvdb::Vec3SGrid>());
-        if (grid.type == "vec3d") return as(LeafValue::three_wide, std::type_identity<openvdb::Vec3DGrid>());
-        if (grid.type == "double") return as(LeafValue::wide, std::type_identity<openvdb::DoubleGrid>());
-        return as(LeafValue::single, std::type_identity<openvdb::FloatGrid>());
-    });
-}
-
 std::vector<std::string_view> EncodedFog::pieces() const {
     std::vector<std::string_view> result;
     for (size_t g = 0; g < heads.size(); ++g) {
@@ -261,7 +165,7 @@ std::string encode_head(const VdbContent& content, size_t number, uint64_t befor
 }
 
 EncodedFog encode_fog(const VdbContent& content, const VdbWriteOptions& options, const std::string& where) {
-    return guarded(ExitCode::internal, where, [&] {
+    return with_library_errors(ExitCode::internal, where, [&] {
         using namespace openvdb;
         initialize();
         std::vector<GridBase::Ptr> grids;

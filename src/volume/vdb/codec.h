@@ -15,14 +15,15 @@ struct DecodedTree {
     Leaves leaves;
     std::vector<VoxelMask> active; // per leaf
     std::vector<Tile> active_tiles;
-    std::vector<Tile> inactive_tiles; // with nonzero values only
+    std::vector<Tile> inactive_tiles; // those in the box of the active voxels that are not 0, equal ones along z as one
     std::vector<ivec3> root_nodes;    // lower corners of the 4096³ cells that the file mentions
     float background = 0;
 };
 
-// Decodes a tree that walk_tree() has checked and counted. Throws Error (refused, out_of_memory) naming `where`.
-DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, const VdbTreeCounts& counts,
-                        uint32_t file_version, const std::string& where, int component = 0);
+// Decodes a tree that walk_tree() has checked and counted, and counts its inactive tiles. Throws Error (refused,
+// out_of_memory) naming `where`.
+DecodedTree decode_tree(std::string_view bytes, const VdbGridEntry& grid, VdbTreeCounts& counts, uint32_t file_version,
+                        const std::string& where, int component = 0);
 
 // The bytes of a file, in order: for each grid everything before its leaf values, then the values.
 struct EncodedFog {

@@ -8,6 +8,11 @@ struct ActiveBox {
     ivec3 low{0}, high{-1};
 
     bool empty() const { return high.x < low.x; }
+    // Whether a tile that is not active belongs to the fog: it is not 0 and not outside the box altogether.
+    bool takes(const Tile& tile) const {
+        return tile.value != 0 && !empty() && glm::all(glm::lessThanEqual(tile.low, high)) &&
+               glm::all(glm::lessThanEqual(low, tile.high));
+    }
 };
 ActiveBox active_box(const DecodedTree& tree);
 

@@ -30,7 +30,7 @@ DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const Vdb
     ByteCursor tree(where, bytes, grid.tree_begin);
     counts = walk_tree(tree, grid);
     if (tree.left() > 0) tree.complain("its voxels end before the grid does");
-    check_memory(size + memory_needed(counts), where);
+    check_tree(counts, size, where);
     return decode_tree(bytes, grid, counts, directory.file_version, where, component);
 }
 

@@ -45,6 +45,7 @@ VdbDirectory read_directory(ByteCursor& file);
 struct VdbTreeCounts {
     uint64_t leaves = 0, lower_nodes = 0, upper_nodes = 0, root_tiles = 0;
     uint64_t active_tiles = 0, active_voxels = 0; // including the voxels of active tiles
+    uint64_t inactive_tiles = 0;                  // those that are decoded; 0 until then
     std::vector<uint64_t> leaf_begins;            // offset of each leaf's values from the start of the tree
 };
 

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "volume/vdb/memory.h"
+#include "volume/vdb/inactive_tiles.h"
 
 #include <nanovdb/NanoVDB.h>
 
@@ -36,8 +36,11 @@ public:
 
     DecodedTree walk() {
         const auto& tree = node<nanovdb::TreeData<3>>(sizeof(nanovdb::GridData), 0);
-        read_root(node<Root>(offset_of(tree), static_cast<int64_t>(tree.mNodeOffset[3])));
+        const Root& root = node<Root>(offset_of(tree), static_cast<int64_t>(tree.mNodeOffset[3]));
+        read_root(root);
         fill_leaves();
+        const auto visit_inactive = [&](const auto& visit) { visit_inactive_tiles(root, visit); };
+        store_inactive_tiles(visit_inactive, bytes_.size(), where_, counts_, result_);
         return std::move(result_);
     }
 
@@ -62,14 +65,9 @@ private:
         if (++nodes > bytes_.size() / sizeof(Node)) refuse(where_, "is damaged: nodes share a child");
     }
 
-    void add_tile(ivec3 low, int size, bool active, float value) {
-        const Tile tile{low, low + size - 1, value};
-        if (active) {
-            result_.active_tiles.push_back(tile);
-            ++counts_.active_tiles, counts_.active_voxels += uint64_t(size) * uint64_t(size) * uint64_t(size);
-        } else if (value != 0) {
-            result_.inactive_tiles.push_back(tile);
-        }
+    void add_active_tile(ivec3 low, int size, float value) {
+        result_.active_tiles.push_back({low, low + size - 1, value});
+        ++counts_.active_tiles, counts_.active_voxels += uint64_t(size) * uint64_t(size) * uint64_t(size);
     }
 
     void read_root(const Root& root) {
@@ -89,7 +87,7 @@ private:
                 read_upper(child<Upper>(root, tile.child), low);
             } else {
                 ++counts_.root_tiles;
-                add_tile(low, 4096, tile.state != 0, component_of(tile.value, component_));
+                if (tile.state != 0) add_active_tile(low, 4096, component_of(tile.value, component_));
             }
         }
         check_places();
@@ -101,25 +99,27 @@ private:
         if (std::ranges::adjacent_find(places) != places.end()) refuse(where_, "duplicate root node");
     }
 
-    // Visits every child of an internal node and adds its tiles.
+    // Visits every child of an internal node and adds its active tiles.
     template<class Node, class OnChild>
     void read_children(const Node& node, ivec3 low, uint32_t bits, int size, const OnChild& on_child) {
         for (uint32_t n = 0; n < 1u << 3 * bits; ++n) {
             const ivec3 at = low + place(n, bits) * size;
             if (node.mChildMask.isOn(n))
                 on_child(node.mTable[n].child, at);
-            else
-                add_tile(at, size, node.mValueMask.isOn(n), component_of(node.mTable[n].value, component_));
+            else if (node.mValueMask.isOn(n))
+                add_active_tile(at, size, component_of(node.mTable[n].value, component_));
         }
     }
 
     void read_upper(const Upper& upper, ivec3 low) {
         count<Upper>(counts_.upper_nodes);
+        uppers_.emplace_back(&upper, low);
         read_children(upper, low, 5, 128, [&](int64_t step, ivec3 at) { read_lower(child<Lower>(upper, step), at); });
     }
 
     void read_lower(const Lower& lower, ivec3 low) {
         count<Lower>(counts_.lower_nodes);
+        lowers_.emplace_back(&lower, low);
         read_children(lower, low, 4, 8, [&](int64_t step, ivec3 at) { add_leaf(child<Leaf>(lower, step), at); });
     }
 
@@ -133,7 +133,7 @@ private:
     }
 
     void fill_leaves() {
-        check_memory(bytes_.size() + memory_needed(counts_), where_);
+        check_tree(counts_, bytes_.size(), where_);
         result_.leaves.reserve(leaves_.size());
         for (const auto& [leaf, origin] : leaves_) result_.leaves.emplace_back(Unfilled{}).origin = origin;
         result_.active.resize(leaves_.size());
@@ -149,10 +149,31 @@ private:
         for (const VoxelMask& mask : result_.active) counts_.active_voxels += count_voxels(mask);
     }
 
+    template<class Node, class Visit>
+    void visit_inactive(const Node& node, ivec3 low, uint32_t bits, int size, const Visit& visit) const {
+        for (uint32_t n = 0; n < 1u << 3 * bits; ++n) {
+            if (node.mChildMask.isOn(n) || node.mValueMask.isOn(n)) continue;
+            const ivec3 at = low + place(n, bits) * size;
+            visit(Tile{at, at + size - 1, component_of(node.mTable[n].value, component_)});
+        }
+    }
+    template<class Visit> void visit_inactive_tiles(const Root& root, const Visit& visit) const {
+        for (uint32_t n = 0; n < root.mTableSize; ++n)
+            if (const typename Root::Tile& tile = *root.tile(n); tile.child == 0 && tile.state == 0) {
+                const auto origin = tile.origin();
+                const ivec3 low(origin[0], origin[1], origin[2]);
+                visit(Tile{low, low + 4095, component_of(tile.value, component_)});
+            }
+        for (const auto& [upper, low] : uppers_) visit_inactive(*upper, low, 5, 128, visit);
+        for (const auto& [lower, low] : lowers_) visit_inactive(*lower, low, 4, 8, visit);
+    }
+
     std::string_view bytes_;
     VdbTreeCounts& counts_;
     const std::string& where_;
     int component_;
+    std::vector<std::pair<const Upper*, ivec3>> uppers_;
+    std::vector<std::pair<const Lower*, ivec3>> lowers_;
     std::vector<std::pair<const Leaf*, ivec3>> leaves_;
     DecodedTree result_;
 };
