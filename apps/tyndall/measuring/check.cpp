@@ -9,6 +9,7 @@
 #include "scene/file/scene_file.h"
 #include "scene/gltf/gltf.h"
 #include "scene/photometry/ies_file.h"
+#include "trace/fog/grid_file.h"
 #include "trace/lights/enclosed_lights.h"
 #include "volume/bricks/bricks.h"
 #include "volume/vdb/vdb.h"
@@ -64,18 +65,21 @@ template<class Check> void guarded(const std::string& file, Problems& problems, 
 
 // Checks the files of a sequence that the scene's frames use, each once.
 template<class Check>
-void check_frames(const std::string& file, const Scene& scene, const FileSequence& sequence, Problems& problems,
-                  const Check& check) {
+void check_frames(const std::string& file, const Scene& scene, const FileSequence& sequence,
+                  std::span<const std::string> grids, Problems& problems, const Check& check) {
     std::set<std::filesystem::path> seen;
+    std::vector<std::string> notes;
     for (int frame = scene.first_frame; frame <= scene.last_frame; ++frame)
         guarded(file, problems, [&] {
-            const auto volume = sequence_file(sequence, frame, MissingFrame::error);
+            const auto volume = grid_file(sequence, grids, frame, MissingFrame::error, notes);
             if (!volume || !seen.insert(*volume).second) return;
             VdbReadReport report;
             check(*volume, report);
             if (const std::string summary = report.summary(); !summary.empty())
                 problems.push_back({volume->string(), summary});
         });
+    for (const std::string& note : notes) // once, however many of the medium's grids are read from one file
+        if (std::ranges::find(problems, note, &Problem::text) == problems.end()) problems.push_back({file, note});
 }
 
 // Checks every grid the scene reads. A density that neither extinction nor emission uses is skipped.
@@ -86,23 +90,26 @@ void check_media(const std::string& file, const Scene& scene, Problems& problems
     for (const MediumSource& medium : scene.media) {
         if (medium.kind != MediumKind::vdb) continue;
         if (some(medium.extinction) || (emits_light(medium) && !medium.blackbody && !medium.emission_grid))
-            check_frames(file, scene, medium.sequence, problems, [&](const auto& volume, VdbReadReport& report) {
-                const SparseVolume fog = read_vdb(volume, medium.density_grid, medium.density_map, infinity, &report);
-                within(volume.string(), [&] { check_bricks(fog); });
-            });
+            check_frames(file, scene, medium.sequence, density_grids(medium), problems,
+                         [&](const auto& volume, VdbReadReport& report) {
+                             const SparseVolume fog =
+                                 read_vdb(volume, medium.density_grid, medium.density_map, infinity, &report);
+                             within(volume.string(), [&] { check_bricks(fog); });
+                         });
         for (const auto* grid : {&medium.albedo_grid, &medium.emission_grid, &medium.temperature, &medium.flame}) {
             if (!*grid) continue;
-            check_frames(file, scene, (*grid)->sequence, problems, [&](const auto& volume, VdbReadReport& report) {
-                const bool is_albedo = grid == &medium.albedo_grid;
-                const ColorVolume color =
-                    read_color_vdb(volume, (*grid)->grids, (*grid)->map, is_albedo ? 1 : infinity, &report);
-                within(volume.string(), [&] {
-                    for (const SparseVolume& channel : color.channels) check_bricks(channel);
-                });
-            });
+            check_frames(file, scene, (*grid)->sequence, (*grid)->grids, problems,
+                         [&](const auto& volume, VdbReadReport& report) {
+                             const bool is_albedo = grid == &medium.albedo_grid;
+                             const ColorVolume color = read_color_vdb(volume, (*grid)->grids, (*grid)->map,
+                                                                      is_albedo ? 1 : infinity, &report);
+                             within(volume.string(), [&] {
+                                 for (const SparseVolume& channel : color.channels) check_bricks(channel);
+                             });
+                         });
         }
         if (const auto& velocity = medium.velocity)
-            check_frames(file, scene, velocity->grid.sequence, problems,
+            check_frames(file, scene, velocity->grid.sequence, velocity->grid.grids, problems,
                          [&](const auto& volume, VdbReadReport& report) {
                              read_velocity_vdb(volume, velocity->grid.grids, velocity->grid.map, &report);
                          });

@@ -5,6 +5,7 @@
 #include "base/io/file.h"
 #include "base/text.h"
 #include "scene/scene.h"
+#include "trace/fog/grid_file.h"
 #include "trace/fog/grids.h"
 #include "trace/fog/media.h"
 #include "trace/fog/motion.h"
@@ -76,7 +77,8 @@ struct FileProperty {
 FileProperty read_frame(const GridSource& source, size_t number, Quantity quantity, int frame,
                         const ReadContext& reading, std::span<const GridProperty> known) {
     Snapshot& snapshot = reading.snapshot;
-    const auto file = file_at(source.sequence, frame, reading.missing, "property", source.text(), snapshot);
+    const auto file =
+        file_at(source.sequence, source.grids, frame, reading.missing, "property", source.text(), snapshot);
     if (!file) return {};
     for (const GridProperty& one : known)
         if (one.key == file->key) return {one, file->content};

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "scene/scene.h"
 #include "trace/fog/density_unit.h"
+#include "trace/fog/grid_file.h"
 #include "trace/fog/grids.h"
 #include "trace/fog/motion.h"
 #include "volume/bricks/bricks.h"
@@ -94,8 +95,8 @@ FogSource grown(const MediumSource& source, double seconds, CacheFolder* files, 
 // The fog in a frame's file, taken from `known` if it is there.
 FogSource read(const MediumSource& source, int frame, MissingFrame missing, std::span<const FogSource> known,
                Snapshot& snapshot) {
-    const auto file =
-        file_at(source.sequence, frame, missing, "file", source.density_grid + source.density_map.text(), snapshot);
+    const auto file = file_at(source.sequence, density_grids(source), frame, missing, "file",
+                              source.density_grid + source.density_map.text(), snapshot);
     if (!file) return {};
     for (const FogSource& one : known)
         if (one.key == file->key) return one;

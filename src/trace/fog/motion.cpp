@@ -5,6 +5,7 @@
 #include "base/io/file.h"
 #include "base/text.h"
 #include "scene/scene.h"
+#include "trace/fog/grid_file.h"
 #include "trace/fog/grids.h"
 #include "volume/bricks/bricks.h"
 #include "volume/motion/moved_fog.h"
@@ -23,7 +24,7 @@ double frames_after(const Scene& scene, const Moment& moment) {
 
 std::shared_ptr<const FileVelocity> velocity_of(const GridSource& source, int frame, MissingFrame missing,
                                                 const std::shared_ptr<const FileVelocity>& before, Snapshot& snapshot) {
-    const auto file = file_at(source.sequence, frame, missing, "velocity", source.text(), snapshot);
+    const auto file = file_at(source.sequence, source.grids, frame, missing, "velocity", source.text(), snapshot);
     if (!file) return nullptr;
     if (before && before->key == file->key) return before;
     VdbReadReport report;
@@ -56,15 +57,15 @@ void note_gap(const FileSequence& sequence, int frame, MissingFrame missing, std
     if (!note.empty() && !std::ranges::count(notes, note)) notes.push_back(std::move(note));
 }
 
-std::optional<SequencedFile> file_at(const FileSequence& sequence, int frame, MissingFrame missing,
-                                     std::string_view kind, const std::string& grids, Snapshot& snapshot) {
-    auto path = sequence_file(sequence, frame, missing);
-    note_gap(sequence, frame, missing, snapshot.notes);
+std::optional<SequencedFile> file_at(const FileSequence& sequence, std::span<const std::string> grids, int frame,
+                                     MissingFrame missing, std::string_view kind, const std::string& text,
+                                     Snapshot& snapshot) {
+    auto path = grid_file(sequence, grids, frame, missing, snapshot.notes);
     if (!path) return std::nullopt;
     SequencedFile file{std::move(*path), {}, {}};
-    file.key = file_key(file.path) + grids;
+    file.key = file_key(file.path) + text;
     if (const CacheFolder* files = snapshot.files.get())
-        file.content = std::string(kind) + " " + file_hash(file.path, *files->inputs) + " " + grids;
+        file.content = std::string(kind) + " " + file_hash(file.path, *files->inputs) + " " + text;
     return file;
 }
 

@@ -4,6 +4,7 @@
 #include "volume/motion/velocity_field.h"
 
 #include <optional>
+#include <span>
 
 namespace tyndall {
 struct GridProperty;
@@ -55,14 +56,15 @@ SparseVolume volume_at(const SequenceTime& time, const PlacedBricks& here, const
 // Notes once which files of a sequence are missing at a frame.
 void note_gap(const FileSequence& sequence, int frame, MissingFrame missing, std::vector<std::string>& notes);
 
-// The file of a frame, and what identifies what is read from it, `grids` of `kind`, as in FogSource::key and
-// BrickPool::content. Notes a gap; nothing if a missing frame is skipped. Throws Error.
+// The file of a frame as by grid_file(), and what identifies what is read from it, `text` about grids of `kind`, as in
+// FogSource::key and BrickPool::content. Throws Error.
 struct SequencedFile {
     std::filesystem::path path;
     std::string key, content;
 };
-std::optional<SequencedFile> file_at(const FileSequence& sequence, int frame, MissingFrame missing,
-                                     std::string_view kind, const std::string& grids, Snapshot& snapshot);
+std::optional<SequencedFile> file_at(const FileSequence& sequence, std::span<const std::string> grids, int frame,
+                                     MissingFrame missing, std::string_view kind, const std::string& text,
+                                     Snapshot& snapshot);
 
 // Largest speed of the medium's velocities, voxels per second; 0 without velocities.
 double voxels_per_second(const Scene& scene, const MediumSource& source, const FogSource& fog);

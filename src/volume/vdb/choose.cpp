@@ -109,11 +109,24 @@ const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string
     return grid;
 }
 
+namespace {
+// The three names that the name of a color or velocity stands for, where no grid has that name; else the names as
+// given.
+std::vector<std::string> component_names(const VdbDirectory& directory, std::span<const std::string> names) {
+    const std::vector<std::string> given(names.begin(), names.end());
+    if (given.size() != 1 || grid_called(directory, given[0]) || !grid_called(directory, given[0] + ".x")) return given;
+    return {given[0] + ".x", given[0] + ".y", given[0] + ".z"};
+}
+}
+
+bool has_grids_called(const VdbDirectory& directory, std::span<const std::string> names) {
+    return std::ranges::all_of(component_names(directory, names),
+                               [&](const std::string& name) { return grid_called(directory, name) != nullptr; });
+}
+
 std::vector<const VdbGridEntry*> color_grids(const VdbDirectory& directory, std::span<const std::string> names,
                                              const ByteCursor& file, std::string_view quantity) {
-    std::vector<std::string> wanted(names.begin(), names.end());
-    if (wanted.size() == 1 && !grid_called(directory, wanted[0]) && grid_called(directory, wanted[0] + ".x"))
-        wanted = {wanted[0] + ".x", wanted[0] + ".y", wanted[0] + ".z"};
+    const std::vector<std::string> wanted = component_names(directory, names);
     std::vector<const VdbGridEntry*> grids;
     for (const std::string& name : wanted) {
         const VdbGridEntry& grid = existing_grid(directory, name, file);

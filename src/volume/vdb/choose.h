@@ -26,6 +26,9 @@ const VdbGridEntry* default_grid(const VdbDirectory& directory);
 const VdbGridEntry& choose_grid(const VdbDirectory& directory, const std::string& wanted, float width,
                                 const ByteCursor& file, std::string_view quantity);
 
+// Whether a file has all the grids that names stand for.
+bool has_grids_called(const VdbDirectory& directory, std::span<const std::string> names);
+
 // The grids of a color's or a velocity's components: a single one for a vector or gray grid. `quantity` is what errors
 // call it. Throws Error (refused).
 std::vector<const VdbGridEntry*> color_grids(const VdbDirectory& directory, std::span<const std::string> names,

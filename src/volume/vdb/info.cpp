@@ -50,7 +50,7 @@ VdbGridInfo grid_info(ByteCursor& file, const VdbDirectory& directory, const Vdb
 
 VdbInfo file_info(const std::filesystem::path& path) {
     ByteCursor file(path);
-    const VdbDirectory directory = read_directory(file);
+    const VdbDirectory directory = read_grids(file);
     VdbInfo info;
     info.format = directory.nano ? "NanoVDB" : "OpenVDB", info.file_version = directory.file_version;
     info.library_version = std::to_string(directory.library_major) + "." + std::to_string(directory.library_minor);

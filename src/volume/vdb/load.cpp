@@ -16,6 +16,12 @@ DecodedTree load_nano_tree(ByteCursor& file, const VdbGridEntry& grid, VdbTreeCo
 }
 }
 
+VdbDirectory read_grids(ByteCursor& file) {
+    VdbDirectory directory = read_directory(file);
+    if (directory.grids.empty()) refuse(file.where, "contains no grids");
+    return directory;
+}
+
 DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid, VdbTreeCounts& counts,
                       int component) {
     if (directory.nano) return load_nano_tree(file, grid, counts = {}, component);

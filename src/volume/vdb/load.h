@@ -6,6 +6,9 @@
 #include <new>
 
 namespace tyndall {
+// The directory of a file that has grids. Throws Error (refused).
+VdbDirectory read_grids(ByteCursor& file);
+
 // Reads the bytes of a tree once, and validates, counts and decodes the same bytes in memory. Throws Error.
 DecodedTree load_tree(ByteCursor& file, const VdbDirectory& directory, const VdbGridEntry& grid, VdbTreeCounts& counts,
                       int component = 0);

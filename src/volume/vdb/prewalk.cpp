@@ -204,7 +204,6 @@ VdbDirectory read_directory(ByteCursor& file) {
 
     directory.metadata = read_metadata(file);
     const auto count = file.value<int32_t>("the number of grids");
-    if (count == 0) refuse(file.where, "contains no grids");
     if (count < 0 || count > static_cast<int32_t>(max_grids))
         file.complain("claims " + std::to_string(count) + " grids");
 

@@ -35,7 +35,7 @@ struct VdbDirectory {
     bool nano = false; // a NanoVDB file, which has no file version
     uint32_t file_version = 0, library_major = 0, library_minor = 0;
     VdbMetadata metadata;
-    std::vector<VdbGridEntry> grids; // in file order, at least one
+    std::vector<VdbGridEntry> grids; // in file order; none before a simulation emits anything
 };
 
 // Reads the header, metadata and every grid's description. Throws Error (refused) unless the file is a complete OpenVDB

@@ -25,7 +25,7 @@ void check_width(const ValueMap& map, const DecodedTree& tree, const std::string
 SparseVolume read_fog(const std::filesystem::path& path, const std::string& wanted, const ValueMap& map, float most,
                       VdbReadReport* report, std::string_view quantity) {
     ByteCursor file(path);
-    VdbDirectory directory = read_directory(file);
+    VdbDirectory directory = read_grids(file);
     const VdbGridEntry& grid = choose_grid(directory, wanted, map.width, file, quantity);
     VdbReadReport mended;
     VdbTreeCounts counts;
@@ -53,7 +53,7 @@ std::vector<const VdbGridEntry*> aligned_color_grids(const VdbDirectory& directo
 ColorVolume read_color(const std::filesystem::path& path, std::span<const std::string> names, const ValueMap& map,
                        float most, VdbReadReport* report) {
     ByteCursor file(path);
-    const VdbDirectory directory = read_directory(file);
+    const VdbDirectory directory = read_grids(file);
     const std::vector<const VdbGridEntry*> grids = aligned_color_grids(directory, names, file);
     const int channels = is_vector_float(*grids[0]) ? 3 : static_cast<int>(grids.size());
     ColorVolume color;
@@ -108,7 +108,7 @@ SparseVolume united_voxels(std::span<const DecodedTree> masks, std::span<const V
 VelocityVolume read_velocity(const std::filesystem::path& path, std::span<const std::string> names, const ValueMap& map,
                              VdbReadReport* report) {
     ByteCursor file(path);
-    const VdbDirectory directory = read_directory(file);
+    const VdbDirectory directory = read_grids(file);
     const std::vector<const VdbGridEntry*> grids = color_grids(directory, names, file, "velocity");
     const bool vectors = is_vector_float(*grids[0]);
     if (!vectors && grids.size() == 1)
@@ -167,6 +167,13 @@ VelocityVolume read_velocity_vdb(const std::filesystem::path& path, std::span<co
 VdbMetadata vdb_metadata(const std::filesystem::path& path) {
     ByteCursor file(path);
     return read_directory(file).metadata;
+}
+
+GridsFound find_vdb_grids(const std::filesystem::path& path, std::span<const std::string> names) {
+    ByteCursor file(path);
+    const VdbDirectory directory = read_directory(file);
+    if (directory.grids.empty()) return GridsFound::empty_file;
+    return has_grids_called(directory, names) ? GridsFound::all : GridsFound::not_all;
 }
 
 bool is_as_written(const std::filesystem::path& path) {

@@ -134,6 +134,10 @@ VelocityVolume read_velocity_vdb(const std::filesystem::path& file, std::span<co
 // File metadata (such as optics and frame written by a bake), without reading voxels.
 std::vector<std::pair<std::string, std::string>> vdb_metadata(const std::filesystem::path& file);
 
+// Whether a file has all of some grids, named as for a color, or no grid at all. Throws Error (unreadable, refused).
+enum class GridsFound { all, not_all, empty_file };
+GridsFound find_vdb_grids(const std::filesystem::path& file, std::span<const std::string> names);
+
 // True if every byte of a file is as this program wrote it. Throws Error (unreadable).
 bool is_as_written(const std::filesystem::path& file);
 }
