@@ -12,6 +12,7 @@
 #include "render/parts/merge.h"
 #include "render/sequence/auto_exposure.h"
 #include "scene/scene.h"
+#include "scene/spared_files.h"
 
 #include <algorithm>
 #include <chrono>
@@ -207,7 +208,7 @@ int run_merge(const Options& args, const Globals& globals) {
     }
     const Scene scene = load_scene(merge.plan.request.scene_file, {merge.plan.request.light_units});
     check_inputs(merge.plan, scene);
-    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    spare_files(scene, places);
     for (const std::string& part : names) places.spare(part);
     measure_exposure(merge, scene);
 

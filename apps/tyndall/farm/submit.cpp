@@ -16,6 +16,7 @@
 #include "render/parts/part_file.h"
 #include "render/parts/plan_file.h"
 #include "scene/scene.h"
+#include "scene/spared_files.h"
 #include "trace/snapshot.h"
 
 #include <algorithm>
@@ -126,7 +127,7 @@ void write_job(const FarmJob& job, const FarmFiles& files, const Options& args, 
                const Globals& globals) {
     OutputPaths places;
     for (const char* name : {"job.json", "plan.json"}) places.check(job.folder / name);
-    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    spare_files(scene, places);
     if (!job.plan_for_each_frame) {
         Globals quiet = globals;
         quiet.quiet = true;

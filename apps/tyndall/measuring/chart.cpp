@@ -9,6 +9,7 @@
 #include "modes/mode.h"
 #include "rendering/render_options.h"
 #include "scene/scene.h"
+#include "scene/spared_files.h"
 #include "trace/moment.h"
 
 #include <algorithm>
@@ -87,7 +88,7 @@ int run_chart(const Options& args, const Globals& globals) {
     OutputPaths places;
     check_places(job, places);
     const Scene scene = load_scene(job.render.scene_file);
-    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    spare_files(scene, places);
     if (scene.media.empty()) refuse(scene.file.string(), "has no fog to chart");
     find_camera(scene, job.render.camera);
     if (args.frame.empty()) job.frame = scene.first_frame;

@@ -9,6 +9,7 @@
 #include "rendering/render_options.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "scene/spared_files.h"
 #include "trace/lights/enclosed_lights.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
@@ -70,7 +71,7 @@ int run_explain(const Options& args, const Globals& globals) {
     check_outputs(args, places);
 
     const Scene scene = load_scene(args.scene);
-    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    spare_files(scene, places);
     if (request.frames.empty()) request.frames = {scene.first_frame};
     const int frame = request.frames[0];
     find_camera(scene, request.camera);

@@ -16,6 +16,7 @@
 #include "rendering/render_options.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "scene/spared_files.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
@@ -179,7 +180,7 @@ int groups_option(const Options& args) {
 Scene load_to_plan(const Options& args, const RenderRequest& request, OutputPaths& places) {
     if (!args.save.empty()) places.check(std::filesystem::path(args.save));
     Scene scene = load_scene(request.scene_file, load_options(args.render));
-    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    spare_files(scene, places);
     find_camera(scene, request.camera);
     return scene;
 }

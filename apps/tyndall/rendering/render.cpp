@@ -19,6 +19,7 @@
 #include "rendering/sheet.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "scene/spared_files.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 
@@ -234,7 +235,7 @@ void check_with_scene(const Scene& scene, const RenderOptions& args, std::vector
         check_sheet_reference(args.sheet_reference, requests[0].frames, size_of(requests[0]));
     if (requests.size() > 1)
         for (const int frame : requests[0].frames) places.check(std::filesystem::path(sheet_name(args, frame)));
-    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    spare_files(scene, places);
     if (!args.plan.empty()) places.spare(args.plan);
 }
 

@@ -65,8 +65,16 @@ void OutputPaths::check(const std::string& pattern, const std::vector<int>& fram
         fail(ExitCode::usage, option, "two frames would be written to '" + printable(*twice, 100) + "'");
 }
 
-void OutputPaths::spare(const fs::path& input) const {
-    if (files_.contains(plain_path(input)))
-        fail(ExitCode::usage, input.string(), "is read by this command and would be overwritten");
+void OutputPaths::spare(const fs::path& input) const { spare_all({input}); }
+
+void OutputPaths::spare_all(const std::vector<fs::path>& inputs) const {
+    if (inputs.empty()) return;
+    const fs::path parent = inputs.front().parent_path(), folder = plain_path(parent.empty() ? "." : parent);
+    for (const fs::path& input : inputs) {
+        std::error_code ignored;
+        const bool is_link = fs::is_symlink(input, ignored);
+        if (files_.contains(is_link ? plain_path(input) : folder / input.filename()))
+            fail(ExitCode::usage, input.string(), "is read by this command and would be overwritten");
+    }
 }
 }

@@ -22,6 +22,8 @@ public:
 
     // Throws Error (usage) if a file checked before would overwrite this one.
     void spare(const std::filesystem::path& input) const;
+    // The same for many files in one folder, of which none need exist.
+    void spare_all(const std::vector<std::filesystem::path>& inputs) const;
 
 private:
     std::vector<std::filesystem::path> checked_, made_; // folders

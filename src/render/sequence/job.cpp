@@ -8,6 +8,7 @@
 #include "render/frame/frame.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
+#include "scene/spared_files.h"
 #include "trace/moment.h"
 #include "trace/shutter_motion.h"
 #include "trace/view.h"
@@ -39,7 +40,7 @@ void check_outputs(const Scene& scene, const RenderRequest& request, OutputPaths
     places.check(request.output, request.frames);
     if (request.png)
         for (const int frame : request.frames) places.check(png_name(frame_name(request.output, frame)));
-    for (const InputFile& input : scene.inputs) places.spare(input.path);
+    spare_files(scene, places);
 }
 
 void check_job(const Scene& scene, const RenderRequest& request, const Mode& mode, OutputPaths& places) {

@@ -19,6 +19,12 @@ TEST(OutputPaths, InputsAreNotAmongThemUnderAnyName) {
     places.spare(scratch / "other.exr");
     for (const char* name : {"sky.0002.exr", "./sky.0002.exr", "link/sky.0002.exr"})
         EXPECT_THAT(error_message(ExitCode::usage, [&] { places.spare(scratch / name); }), HasSubstr("overwritten"));
+    std::filesystem::create_symlink(scratch / "sky.0002.exr", scratch / "alias.0009.exr");
+    EXPECT_THAT(error_message(ExitCode::usage,
+                              [&] {
+                                  places.spare_all({scratch / "alias.0008.exr", scratch / "alias.0009.exr"});
+                              }),
+                HasSubstr("alias.0009.exr: is read by this command and would be overwritten"));
 }
 
 TEST(OutputPaths, EmptyFoldersAreRemovedAgain) {
