@@ -152,7 +152,7 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         vec3 up(0, 1, 0);
         Light light = light_at(scene, scene.lights[i], moment, up);
-        add_filter(scene.lights[i], moment, up, missing, previous, light);
+        add_filter(scene.lights[i], moment, up, missing, previous, snapshot.notes, light);
         if (const auto& gobo = scene.lights[i].gobo; gobo && !gobo->still)
             note_gap(gobo->sequence, moment.frame, MissingFrame::hold, snapshot.notes); // also with skip: gobo_file()
         if (has_area(scene.lights[i])) add_face(scene.lights[i], moment.seconds, up, light);

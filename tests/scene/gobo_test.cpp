@@ -108,6 +108,10 @@ TEST(Gobo, LargePicturesAreAveragedAndSaidHugeOnesRefused) {
     EXPECT_NE(
         error_message(ExitCode::refused, [&] { make_gobo(huge, ColorSpace::srgb, "huge.png", note); }).find("8192"),
         std::string::npos);
+    std::string empty = png_of({1, 1}, {white});
+    empty.replace(16, 8, std::string("\0\0\0\0\0\0\0\5", 8));
+    EXPECT_EQ(error_message(ExitCode::refused, [&] { make_gobo(empty, ColorSpace::srgb, "empty.png", note); }),
+              "empty.png: the image has 0x5 pixels; at least 1 on a side is needed");
     EXPECT_NE(error_message(ExitCode::refused, [&] { make_gobo("no picture", ColorSpace::srgb, "x.png", note); })
                   .find("x.png"),
               std::string::npos);

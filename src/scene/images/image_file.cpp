@@ -155,9 +155,9 @@ ivec2 image_size(std::string_view bytes, std::string_view where) {
     } else if (!stbi_info_from_memory(start(bytes), static_cast<int>(bytes.size()), &size.x, &size.y, &channels)) {
         refuse_damaged(where);
     }
-    if (size.x < 1 || size.y < 1 || std::max(size.x, size.y) > largest_image_side)
-        refuse(where, "the image has " + std::to_string(size.x) + "x" + std::to_string(size.y) +
-                          " pixels; at most 16384 on a side can be used");
+    const std::string pixels = "the image has " + std::to_string(size.x) + "x" + std::to_string(size.y) + " pixels; ";
+    if (size.x < 1 || size.y < 1) refuse(where, pixels + "at least 1 on a side is needed");
+    if (std::max(size.x, size.y) > largest_image_side) refuse(where, pixels + "at most 16384 on a side can be used");
     return size;
 }
 

@@ -10,13 +10,14 @@
 #include "scene/scene.h"
 #include "trace/snapshot.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tyndall {
 namespace {
 // The gobo of a frame; shared with the previous frame if the file is the same.
-std::shared_ptr<const Gobo> gobo_of(const GoboSource& source, int frame, MissingFrame missing,
-                                    const Snapshot* previous) {
+std::shared_ptr<const Gobo> gobo_of(const GoboSource& source, int frame, MissingFrame missing, const Snapshot* previous,
+                                    std::vector<std::string>& notes) {
     if (source.still) return source.still;
     const std::filesystem::path file = gobo_file(source, frame, missing);
     const uint64_t size = check_readable(file);
@@ -30,12 +31,14 @@ std::shared_ptr<const Gobo> gobo_of(const GoboSource& source, int frame, Missing
     std::string note;
     auto gobo = make_gobo(read_file(file, largest_gobo_file), source.space, file.string(), note);
     gobo->file = key;
+    if (!note.empty()) note = file.filename().string() + ": " + note;
+    if (!note.empty() && !std::ranges::count(notes, note)) notes.push_back(std::move(note));
     return gobo;
 }
 }
 
 void add_filter(const LightSource& source, Moment moment, vec3 up, MissingFrame missing, const Snapshot* previous,
-                Light& light) {
+                std::vector<std::string>& notes, Light& light) {
     if (!source.profile && !source.gobo) return;
     auto filter = std::make_shared<LightFilter>();
     filter->direction = light.direction;
@@ -43,7 +46,7 @@ void add_filter(const LightSource& source, Moment moment, vec3 up, MissingFrame 
     filter->profile_axes = light_axes(light.direction, up, source.profile_rotation.at(moment.seconds));
     if (source.gobo) {
         const GoboSource& gobo = *source.gobo;
-        filter->gobo = gobo_of(gobo, moment.frame, missing, previous);
+        filter->gobo = gobo_of(gobo, moment.frame, missing, previous, notes);
         filter->gobo_axes = light_axes(light.direction, up, gobo.rotation.at(moment.seconds));
         const float widest = glm::radians(89.0f);
         const float half = std::tan(std::min(light.outer_cone, widest)) * gobo.scale.at(moment.seconds);

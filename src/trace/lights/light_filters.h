@@ -5,6 +5,9 @@
 
 #include "base/math.h"
 
+#include <string>
+#include <vector>
+
 namespace tyndall {
 struct Light;
 struct LightSource;
@@ -12,7 +15,7 @@ struct Snapshot;
 
 // Sets the filter of a light, if it has one; the light's position and cone must be set, `up` is its up vector. A point
 // light whose profile emits nothing backward becomes a spot, so that nothing beyond its cone is evaluated. Reuses
-// images that `previous` (may be null) has. Throws Error.
+// images that `previous` (may be null) has. Notes once what images of a sequence lose. Throws Error.
 void add_filter(const LightSource& source, Moment moment, vec3 up, MissingFrame missing, const Snapshot* previous,
-                Light& light);
+                std::vector<std::string>& notes, Light& light);
 }
