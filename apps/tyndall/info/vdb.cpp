@@ -72,7 +72,8 @@ std::string vdb_report(const std::filesystem::path& file, bool json) {
                           {"compression", info.compression},
                           {"metadata", json_object({info.metadata.begin(), info.metadata.end()})},
                           {"grids", json_list(info.grids, grid_json)},
-                          {"scene_medium", medium_text(file, info)}});
+                          {"scene_medium", medium_text(file, info)},
+                          {"scene_grids", velocity_text(file, info)}});
     }
     std::string text = printable(file.string()) + ": " + info.format + ", " + count_text(info.grids.size(), "grid") +
                        (info.file_version ? formatted(", file version %u", info.file_version) : "") + ", written by " +
@@ -82,6 +83,8 @@ std::string vdb_report(const std::filesystem::path& file, bool json) {
     for (const VdbGridInfo& grid : info.grids) text += grid_text(grid);
     if (const std::string medium = medium_text(file, info); !medium.empty())
         text += "  in a scene file:\n    \"media\": [" + printable(medium, 1000) + "]\n";
+    if (const std::string grids = velocity_text(file, info); !grids.empty())
+        text += "  in a scene file, in the medium that it moves:\n    \"grids\": " + printable(grids, 1000) + "\n";
     return text;
 }
 }

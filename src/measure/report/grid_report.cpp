@@ -75,7 +75,10 @@ std::vector<std::pair<std::string, std::string>> grid_rows(const VdbGridInfo& gr
                                               static_cast<double>(grid.background)));
     else
         rows.emplace_back("values", ranges_text(grid.ranges));
-    const uint64_t negative = grid.role == GridRole::velocity ? 0 : grid.negative;
+    // Colors and scalars have no negative values; distances, velocities and other vectors do.
+    const bool is_signed = grid.role == GridRole::velocity || grid.role == GridRole::level_set ||
+                           (grid.role == GridRole::other && !grid.ranges.empty());
+    const uint64_t negative = is_signed ? 0 : grid.negative;
     if (grid.non_finite || negative)
         rows.emplace_back("faults", std::to_string(grid.non_finite) + " not finite" +
                                         (negative ? ", " + std::to_string(negative) + " negative" : "") +

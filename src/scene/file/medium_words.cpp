@@ -48,17 +48,30 @@ std::string temperature_text(const VdbGridInfo& grid) {
     return "{" + member("grid", quote_json(grid.key)) + ", " + member("scale", digits(hottest / grid.maximum)) + "}";
 }
 
+// How deep inside the distances of a level set are known: half its narrow band, or where it keeps every distance, to
+// the least one.
+float known_depth(const VdbGridInfo& grid) {
+    return grid.background > 0 ? grid.background : std::max(-grid.minimum, 0.0f);
+}
+
 // The density grid, or a level set with the width of its falloff.
 std::string density_text(const VdbGridInfo& grid) {
     if (grid.role != GridRole::level_set) return quote_json(grid.key);
-    return "{" + member("grid", quote_json(grid.key)) + ", " + member("width", digits(0.5f * grid.background)) + "}";
+    return "{" + member("grid", quote_json(grid.key)) + ", " + member("width", digits(0.5f * known_depth(grid))) + "}";
 }
 
 const VdbGridInfo* density_of(const VdbInfo& info) {
     for (const VdbGridInfo& grid : info.grids)
         if (grid.is_fog) return &grid;
     const VdbGridInfo* level_set = grid_like(info, GridRole::level_set);
-    return level_set && level_set->background > 0 ? level_set : nullptr;
+    return level_set && known_depth(*level_set) > 0 ? level_set : nullptr;
+}
+
+const VdbGridInfo* velocity_of(const VdbInfo& info) {
+    const auto found = std::ranges::find_if(info.grids, [](const VdbGridInfo& grid) {
+        return grid.role == GridRole::velocity && grid.active_voxels > 0 && can_be_named(grid);
+    });
+    return found == info.grids.end() ? nullptr : &*found;
 }
 }
 
@@ -82,21 +95,27 @@ std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {
     const VdbGridInfo* emission = temperature ? nullptr : grid_like(info, GridRole::emission);
     if (!density && !temperature && !emission) return {};
     const bool dims = density && density->maximum > 0;
-    const auto velocity = std::ranges::find_if(info.grids, [](const VdbGridInfo& grid) {
-        return grid.role == GridRole::velocity && grid.active_voxels > 0 && can_be_named(grid);
-    });
     std::vector<std::string> grids;
     if (dims && can_be_named(*density)) grids.push_back(member("density", density_text(*density)));
     if (dims && color) grids.push_back(member("albedo", color_name(*color)));
     if (temperature) grids.push_back(member("temperature", temperature_text(*temperature)));
     if (flame) grids.push_back(member("flame", quote_json(flame->key)));
     if (emission) grids.push_back(member("emission", color_name(*emission)));
-    if (velocity != info.grids.end()) grids.push_back(member("velocity", color_name(*velocity)));
+    if (const VdbGridInfo* velocity = velocity_of(info)) grids.push_back(member("velocity", color_name(*velocity)));
     std::string text =
         "{" + member("type", "\"vdb\"") + ", " + member("file", quote_json(vdb.filename().string())) +
         (states_extinction(info) ? "" : ", " + member("extinction", dims ? digits(default_extinction(*density)) : "0"));
     if (!grids.empty()) text += ", " + member("grids", "{" + joined(grids, ", ") + "}");
     if (temperature) text += ", " + member("blackbody", "{\"convention\": \"kelvin\", \"emission_scale\": 1}");
     return text + "}";
+}
+
+std::string velocity_text(const std::filesystem::path& vdb, const VdbInfo& info) {
+    const VdbGridInfo* velocity = velocity_of(info);
+    if (!velocity || !medium_text(vdb, info).empty()) return {};
+    return "{" +
+           member("velocity", "{" + member("file", quote_json(vdb.filename().string())) + ", " +
+                                  member("grid", color_name(*velocity)) + "}") +
+           "}";
 }
 }

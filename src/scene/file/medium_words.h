@@ -11,6 +11,9 @@ namespace tyndall {
 // usable.
 std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info);
 
+// The "grids" of a medium of another file that the velocities of this one move; empty unless this one has nothing else.
+std::string velocity_text(const std::filesystem::path& vdb, const VdbInfo& info);
+
 // Whether a medium of the file has an extinction if its entry names none.
 bool states_extinction(const VdbInfo& info);
 

@@ -37,6 +37,8 @@ std::string grid_problem(const VdbGridEntry& grid, float width, std::string_view
         return "has the tree shape " + printable(grid.tree_shape, 40) + "; only 5_4_3 is supported";
     if (!is_scalar_float(grid))
         return "holds " + printable(grid.type, 40) + " values, not a " + std::string(quantity) + " per voxel";
+    if (grid.grid_class == "level set" && quantity != "density")
+        return "is a level set, which holds distances, not a " + std::string(quantity) + " per voxel";
     if (grid.grid_class == "level set" && width == 0)
         return "is a level set; for fog, set a \"width\" in \"grids\": {\"density\": {...}}, no wider than its "
                "narrow band, or convert it (vdb_tool -read in.vdb -ls2fog -write fog.vdb)";

@@ -15,11 +15,18 @@
 
 namespace tyndall {
 namespace {
-// Distances are known only within the narrow band, whose half width is the background value.
+// Distances are known only within the narrow band, whose half width is the background value. Where that is not above 0,
+// as programs write that keep every distance, they are known down to the least one.
 void check_width(const ValueMap& map, const DecodedTree& tree, const std::string& where) {
-    if (!(map.width > tree.background) || !(tree.background > 0)) return;
-    refuse(where, formatted("its narrow band has a half width of %g, in the file's units; a \"width\" of %g exceeds it",
-                            static_cast<double>(tree.background), static_cast<double>(map.width)));
+    VdbGridInfo known;
+    if (!(tree.background > 0)) add_statistics(tree, known);
+    const float depth = tree.background > 0 ? tree.background : std::max(-known.minimum, 0.0f);
+    if (!(map.width > depth)) return;
+    refuse(where,
+           formatted(tree.background > 0
+                         ? "its narrow band has a half width of %g, in the file's units; a \"width\" of %g exceeds it"
+                         : "its distances reach down to %g below 0, in the file's units; a \"width\" of %g exceeds it",
+                     static_cast<double>(depth), static_cast<double>(map.width)));
 }
 
 SparseVolume read_fog(const std::filesystem::path& path, const std::string& wanted, const ValueMap& map, float most,

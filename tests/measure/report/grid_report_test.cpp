@@ -21,12 +21,16 @@ VdbGridInfo grid_with(GridRole role, uint64_t non_finite, uint64_t negative) {
     return grid;
 }
 
-TEST(GridReport, FaultsOfVelocitiesAreThoseNotFinite) {
+TEST(GridReport, FaultsOfWhatHasASignAreThoseNotFinite) {
     EXPECT_EQ(row_of(grid_with(GridRole::density, 0, 0), "faults"), "");
     EXPECT_EQ(row_of(grid_with(GridRole::density, 2, 3), "faults"), "2 not finite, 3 negative: read as 0");
     EXPECT_EQ(row_of(grid_with(GridRole::color, 0, 3), "faults"), "0 not finite, 3 negative: read as 0");
     EXPECT_EQ(row_of(grid_with(GridRole::velocity, 2, 3), "faults"), "2 not finite: read as 0");
-    EXPECT_EQ(row_of(grid_with(GridRole::velocity, 0, 3), "faults"), "");
+    for (const GridRole role : {GridRole::velocity, GridRole::level_set})
+        EXPECT_EQ(row_of(grid_with(role, 0, 3), "faults"), "");
+    VdbGridInfo normals = grid_with(GridRole::other, 0, 3);
+    normals.ranges.resize(3);
+    EXPECT_EQ(row_of(normals, "faults"), "");
 }
 }
 }

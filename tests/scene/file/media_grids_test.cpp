@@ -153,8 +153,12 @@ TEST(MediaGrids, InfoSaysWhatToWrite) {
     info.grids = {grid("surface", GridRole::level_set, 3)};
     info.grids[0].background = 3;
     EXPECT_THAT(medium_text("ball.vdb", info), HasSubstr(R"("density": {"grid": "surface", "width": 1.5})"));
+    EXPECT_EQ(velocity_text("ball.vdb", info), "");
+    info.grids[0].background = 0, info.grids[0].minimum = -2;
+    EXPECT_THAT(medium_text("inflow.vdb", info), HasSubstr(R"("density": {"grid": "surface", "width": 1})"));
     info.grids = {grid("vel", GridRole::velocity, 3)};
     EXPECT_EQ(medium_text("wind.vdb", info), "");
+    EXPECT_EQ(velocity_text("a/wind.vdb", info), R"({"velocity": {"file": "wind.vdb", "grid": "vel"}})");
     // Densities end at 65504; names that a scene file cannot hold are left out.
     info.grids = {grid("density", GridRole::density, 3e38f), grid("heat\xff", GridRole::temperature, 1000)};
     EXPECT_THAT(medium_text("hot.vdb", info), EndsWith(R"("extinction": 3.53e-06, "grids": {"density": "density"}})"));

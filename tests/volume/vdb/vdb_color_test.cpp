@@ -170,11 +170,30 @@ TEST(VdbLevelSet, BecomesFogOfAWidthWithinItsNarrowBand) {
     EXPECT_THAT(error_message(ExitCode::refused, [&] { read_vdb(file, "surface", map, infinity, nullptr); }),
                 HasSubstr("its narrow band has a half width of 3, in the file's units; a \"width\" of 3.5 exceeds it"));
     EXPECT_THAT(error_message(ExitCode::refused, [&] { read_vdb(file, "surface"); }), HasSubstr("\"width\""));
+    EXPECT_THAT(error_message(ExitCode::refused,
+                              [&] { read_vdb(file, "surface", ValueMap(), infinity, nullptr, "temperature"); }),
+                EndsWith("is a level set, which holds distances, not a temperature per voxel"));
     AuthoredGrid fog_volume = grid_of("density", "float", {{{0, 0, 0}, 1.0f}});
     fog_volume.grid_class = "fog volume";
     const auto other = scratch.put("fog.vdb", authored({fog_volume}));
     EXPECT_THAT(error_message(ExitCode::refused, [&] { read_vdb(other, "density", map, infinity, nullptr); }),
                 HasSubstr("a \"width\" is for level sets"));
+}
+
+// Mantaflow writes every distance, and 0 as the background.
+TEST(VdbLevelSet, WithoutANarrowBandTheWidthEndsAtItsLeastDistance) {
+    const TempFolder scratch;
+    AuthoredGrid grid = level_set();
+    grid.background = 0;
+    for (auto& [at, distance] : grid.inactive_voxels) grid.voxels.emplace_back(at, glm::length(vec3(at)) - 6);
+    grid.inactive_voxels.clear();
+    const auto file = scratch.put("in.vdb", authored({grid}));
+    ValueMap map;
+    map.width = 6;
+    EXPECT_EQ(value_at(read_vdb(file, "", map, infinity, nullptr), {3, 0, 0}), 0.5f);
+    map.width = 50;
+    EXPECT_THAT(error_message(ExitCode::refused, [&] { read_vdb(file, "", map, infinity, nullptr); }),
+                HasSubstr("its distances reach down to 6 below 0, in the file's units; a \"width\" of 50 exceeds it"));
 }
 
 TEST(VdbRoles, GridsLookLikeWhatTheyAreCalled) {
