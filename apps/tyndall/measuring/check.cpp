@@ -178,7 +178,9 @@ void check_file(const std::string& file, Problems& problems) {
     case FileKind::exr:
         return check_exr(file, problems);
     case FileKind::ies:
-        return static_cast<void>(read_ies(read_file(file, largest_ies_file), file));
+        for (const std::string& note : read_ies(read_file(file, largest_ies_file), file).notes)
+            problems.push_back({file, note});
+        return;
     case FileKind::recipe:
         return static_cast<void>(read_recipe(file));
     case FileKind::schema:

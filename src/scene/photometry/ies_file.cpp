@@ -145,7 +145,7 @@ void read_head(Reader& reader, IesFile& file) {
     reader.fail("no line \"TILT=\": not an IES photometric file");
 }
 
-// Reads the tilt factors, which are not applied, as the luminaire's mounting is unknown.
+// Reads the tilt factors, which are not applied, as they depend on the luminaire's mounting.
 void read_tilt(Reader& reader, IesFile& file) {
     const std::string word = upper(file.tilt);
     if (word == "NONE") {
@@ -153,7 +153,7 @@ void read_tilt(Reader& reader, IesFile& file) {
         return;
     }
     if (word != "INCLUDE") {
-        file.notes.push_back("the tilt factors in \"" + printable(file.tilt, 60) + "\" are ignored");
+        file.notes.push_back("its tilt factors, in \"" + printable(file.tilt, 60) + "\", are neither read nor applied");
         return;
     }
     file.tilt = word;
@@ -162,8 +162,8 @@ void read_tilt(Reader& reader, IesFile& file) {
     reader.numbers(count, "a tilt angle");
     const std::vector<double> factors = reader.numbers(count, "a tilt factor");
     file.tilt_factors = {*std::ranges::min_element(factors), *std::ranges::max_element(factors)};
-    file.notes.push_back("tilt factors of " + shortest_text(file.tilt_factors.low) + " to " +
-                         shortest_text(file.tilt_factors.high) + " are ignored");
+    file.notes.push_back("its tilt factors, " + shortest_text(file.tilt_factors.low) + " to " +
+                         shortest_text(file.tilt_factors.high) + ", are not applied: they depend on how it is mounted");
 }
 
 // Vertical or horizontal angles, which must ascend.
@@ -224,6 +224,15 @@ void read_candela(Reader& reader, double factor, IesFile& file) {
     if (!reader.at_end()) file.notes.push_back("text after the candela values is ignored");
 }
 
+// A luminaire cannot emit more light than its lamps: then a number in the file is wrong, mostly the multiplier.
+void compare_with_lamps(IesFile& file) {
+    constexpr double tolerated = 1.2;
+    const double lamps = file.absolute() ? 0 : file.lamps * file.lumens_per_lamp, lumens = zonal_lumens(file);
+    if (!(lamps > 0) || !(lumens > tolerated * lamps)) return;
+    file.notes.push_back(formatted("its candela values give %.4g lumens, %.3g %% of the %g lumens of its lamps", lumens,
+                                   100 * lumens / lamps, lamps));
+}
+
 void read_body(Reader& reader, IesFile& file) {
     file.lamps = reader.number("the number of lamps"), file.lumens_per_lamp = reader.number("the lumens per lamp");
     file.multiplier = reader.number("the candela multiplier");
@@ -249,6 +258,7 @@ void read_body(Reader& reader, IesFile& file) {
     read_candela(reader, file.multiplier * file.ballast, file);
     check_planes(reader, file);
     if (!(file.peak() > 0)) reader.fail("all candela values are 0: the file gives no light");
+    compare_with_lamps(file);
 }
 }
 

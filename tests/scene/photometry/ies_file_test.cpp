@@ -168,9 +168,21 @@ TEST(IesFile, TiltFactorsAreReadAndSaid) {
     const IesFile file = read_ies(replaced(plain, "TILT=NONE", "TILT=INCLUDE\n1\n2\n0 90\n1 .8"), "a.ies");
     EXPECT_EQ(file.tilt, "INCLUDE");
     ASSERT_EQ(file.notes.size(), 1u);
-    EXPECT_NE(file.notes[0].find("0.8 to 1"), std::string::npos);
+    EXPECT_EQ(file.notes[0], "its tilt factors, 0.8 to 1, are not applied: they depend on how it is mounted");
     EXPECT_DOUBLE_EQ(file.peak(), 200);
     EXPECT_EQ(read_ies(replaced(plain, "TILT=NONE", "TILT=lamp.tlt"), "a.ies").notes.size(), 1u);
+}
+
+TEST(IesFile, MoreLightThanItsLampsGiveIsSaid) {
+    const double lumens = zonal_lumens(read_ies(plain, "a.ies"));
+    const auto notes = [&](double lamps) {
+        return read_ies(replaced(plain, "\n1 -1 2", "\n2 " + std::to_string(lamps / 2) + " 2"), "a.ies").notes;
+    };
+    EXPECT_TRUE(notes(lumens / 0.9).empty());
+    EXPECT_TRUE(notes(lumens / 1.1).empty());
+    ASSERT_EQ(notes(lumens / 3.23).size(), 1u);
+    EXPECT_NE(notes(lumens / 3.23)[0].find("323 % of the"), std::string::npos) << notes(lumens / 3.23)[0];
+    EXPECT_TRUE(read_ies(plain, "a.ies").notes.empty()) << "absolute photometry";
 }
 
 TEST(IesFile, RealFilesHaveTheirLumens) {
