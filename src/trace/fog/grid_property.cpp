@@ -37,23 +37,42 @@ void add_pool(const SparseVolume& volume, StoredProperty& property) {
 
 constexpr std::string_view property_names[] = {"albedo", "emission", "temperature", "flame"};
 
+// What half floats lose of factors on a light source that are tiny in the file's units; empty if nothing to speak of.
+std::string lost_text(std::span<const SparseVolume> channels) {
+    constexpr float precise = 0x1p-10f; // below, more than the darkest 1/16 of the values lose precision
+    float highest = 0;
+    for (const SparseVolume& channel : channels) {
+        for (const Leaf& leaf : channel.leaves) highest = std::max(highest, std::ranges::max(leaf.values));
+        for (const Tile& tile : channel.tiles) highest = std::max(highest, tile.value);
+    }
+    if (highest == 0 || highest >= precise) return {};
+    return formatted("its values, up to %g, are stored as half floats: those below 6e-5 lose precision and those below "
+                     "6e-8 are lost; give it a larger \"scale\"",
+                     static_cast<double>(highest));
+}
+
 StoredProperty read_file(const std::filesystem::path& file, const GridSource& source, size_t number,
                          Quantity quantity) {
     StoredProperty property;
     VdbReadReport report;
+    std::string lost;
     if (quantity == Quantity::number) {
         const SparseVolume numbers =
             read_vdb(file, source.grids[0], source.map, largest_half, &report, property_names[number]);
+        if (property_names[number] == "flame") lost = lost_text({&numbers, 1});
         within(file.string(), [&] { add_pool(numbers, property); });
     } else {
         const float most = quantity == Quantity::share ? 1 : largest_half;
         const ColorVolume color = read_color_vdb(file, source.grids, source.map, most, &report);
+        if (quantity == Quantity::color) lost = lost_text(color.channels);
         within(file.string(), [&] {
             for (const SparseVolume& channel : color.channels) add_pool(channel, property);
             add_pool(color.coverage, property);
         });
     }
     property.note = report.summary();
+    if (!lost.empty())
+        property.note += (property.note.empty() ? "" : "; ") + std::string(property_names[number]) + ": " + lost;
     return property;
 }
 

@@ -105,6 +105,58 @@ TEST(FogGrids, TemperaturesOutOfRangeAreMendedAndSaid) {
     for (const Medium& medium : snapshot.media) EXPECT_TRUE(is_finite(medium.optics.emission.radiance));
 }
 
+template<class T> std::string raw(const T& value) { return {reinterpret_cast<const char*>(&value), sizeof value}; }
+std::string text(const std::string& words) { return raw(static_cast<uint32_t>(words.size())) + words; }
+
+// An OpenVDB file of one leaf with all voxels active; write_vdb() does not write what is no number.
+std::string file_of_leaf(const std::string& grid, const std::array<float, 512>& values) {
+    const std::string first(1, '\1'), all(64, '\xff'), kind(1, '\0');
+    const auto node = [&](size_t slots) { return first + std::string(2 * slots / 8 - 1, '\0') + kind; };
+    return raw(int64_t{0x56444220}) + raw(std::array<uint32_t, 3>{224, 10, 0}) + std::string(1 + 36 + 4, '\0') +
+           raw(int32_t{1}) + text(grid) + text("Tree_float_5_4_3") + text("") + raw(std::array<int64_t, 3>{}) +
+           raw(uint32_t{2}) + raw(uint32_t{0}) + text("AffineMap") + raw(dmat4(1)) + raw(int32_t{1}) + raw(0.0f) +
+           raw(std::array<uint32_t, 2>{0, 1}) + raw(ivec3(0)) + node(32768) + node(4096) + all + all + kind +
+           raw(values);
+}
+
+TEST(FogGrids, TemperaturesThatAreNoNumbersAreColdAndSaid) {
+    const TempFolder scratch;
+    Scene scene;
+    const auto radiance = [&](float odd) {
+        std::array<float, 512> kelvin;
+        kelvin.fill(1000), kelvin[9] = odd;
+        scene.media = {fire_source(scratch)};
+        scene.media[0].temperature->sequence.pattern = scratch.put("odd.vdb", file_of_leaf("temperature", kelvin));
+        const Snapshot snapshot = make_snapshot(scene, Moment{1, 0});
+        EXPECT_EQ(snapshot.media.size(), 2u);
+        const std::string said = "odd.vdb: grid \"temperature\": 1 non-finite voxels set to 0";
+        EXPECT_EQ(snapshot.notes, odd == 0 ? std::vector<std::string>() : std::vector{said});
+        return snapshot.media.back().optics.emission.radiance;
+    };
+    const vec3 none = radiance(std::numeric_limits<float>::quiet_NaN());
+    EXPECT_GT(none.x, 0);
+    EXPECT_EQ(none, radiance(0));
+}
+
+// Half floats end at 6e-8, and below 6e-5 they have fewer digits.
+TEST(FogGrids, EmissionThatHalfFloatsLoseIsSaid) {
+    const TempFolder scratch;
+    const auto notes = [&](float value, float scale) {
+        Scene scene;
+        scene.media = {fire_source(scratch)};
+        scene.media[0].temperature.reset(), scene.media[0].blackbody.reset();
+        scene.media[0].emission_grid = GridSource{file_of(scratch, "glow", constant_box(16, value)), {"glow"}, {}};
+        scene.media[0].emission_grid->map.scale = scale, scene.media[0].emission = vec3(1);
+        return make_snapshot(scene, Moment{1, 0}).notes;
+    };
+    EXPECT_THAT(notes(1e-5f, 1),
+                Contains("glow.vdb: emission: its values, up to 1e-05, are stored as half floats: those "
+                         "below 6e-5 lose precision and those below 6e-8 are lost; give it a larger "
+                         "\"scale\""));
+    EXPECT_THAT(notes(1e-5f, 1000), ::testing::IsEmpty());
+    EXPECT_THAT(notes(0.5f, 1), ::testing::IsEmpty());
+}
+
 TEST(FogGrids, AMissingGridIsOneLine) {
     const TempFolder scratch;
     Scene scene;
