@@ -1,5 +1,6 @@
 // Options for reading scene files.
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,5 +12,6 @@ struct LoadOptions {
     // Units of the glTF's lights: candela and lux; Blender's "unitless" (683 lm/W missing); Blender's "raw" watts
     // (points and spots also spread over the sphere, 683 / 4 pi).
     LightUnits light_units = LightUnits::spec;
+    size_t texture_bytes = size_t{1} << 30; // the most that all textures of a glTF may take; smaller in tests
 };
 }

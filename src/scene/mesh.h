@@ -1,6 +1,6 @@
 // Triangle meshes, their materials and textures.
 #pragma once
-#include "base/image.h"
+#include "scene/images/texels.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -12,7 +12,7 @@ enum class AlphaMode { opaque, mask, blend };
 
 struct Texture {
     std::string name;
-    Image<vec4> texels; // linear color, straight alpha; empty when the file could not be used
+    std::shared_ptr<const Texels> texels; // shared by all textures of an image; null when it could not be used
     bool repeat_u = true, repeat_v = true, mirror_u = false, mirror_v = false, nearest = false;
     mat3 uv_transform{1}; // applied to uv first (KHR_texture_transform)
 };

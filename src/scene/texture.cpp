@@ -23,10 +23,10 @@ float texel_coordinate(float uv, int size, bool repeat, bool mirror) {
     return std::clamp(uv, -1.0f, 2.0f) * size;
 }
 
-// Interpolates value_of(texel).
-template<class ValueOf> auto interpolated_texel(const Texture& texture, vec2 uv, const ValueOf& value_of) {
-    assert(!texture.texels.empty());
-    const Image<vec4>& image = texture.texels;
+// Interpolates value_of(texel) of a texture's image.
+template<class T, class ValueOf>
+auto interpolated_texel(const Texture& texture, const Image<T>& image, vec2 uv, const ValueOf& value_of) {
+    assert(!image.empty());
     const vec2 place(texture.uv_transform * vec3(uv, 1));
     const float x = texel_coordinate(place.x, image.size.x, texture.repeat_u, texture.mirror_u);
     const float y = texel_coordinate(place.y, image.size.y, texture.repeat_v, texture.mirror_v);
@@ -49,10 +49,18 @@ template<class ValueOf> auto interpolated_texel(const Texture& texture, vec2 uv,
 }
 
 vec4 sample_texture(const Texture& texture, vec2 uv) {
-    return interpolated_texel(texture, uv, [](const vec4& texel) -> vec4 { return texel; });
+    const Texels& texels = *texture.texels;
+    const auto same = [](const vec4& texel) -> vec4 { return texel; };
+    if (texels.codes.empty()) return interpolated_texel(texture, texels.linear, uv, same);
+    const auto& lights = srgb_lights();
+    return interpolated_texel(texture, texels.codes, uv, [&](Code4 code) { return linear_texel(lights, code); });
 }
 
 float sample_alpha(const Texture& texture, vec2 uv) {
-    return interpolated_texel(texture, uv, [](const vec4& texel) { return texel.w; });
+    const Texels& texels = *texture.texels;
+    if (texels.codes.empty())
+        return interpolated_texel(texture, texels.linear, uv, [](const vec4& texel) { return texel.w; });
+    return interpolated_texel(texture, texels.codes, uv,
+                              [](Code4 code) { return static_cast<float>(code.w) / 255.0f; });
 }
 }

@@ -67,9 +67,9 @@ TEST(Gobo, SixteenBitsAreKept) {
     EXPECT_NEAR(gobo_at(*linear, 0.75, 0.5).x, 40000.0 / 65535 * 30000 / 65535, 1e-6);
     EXPECT_NEAR(gobo_at(*make_gobo(bytes, ColorSpace::srgb, "gobo.png", note), 0.25, 0.5).x, 100.0 / 65535 / 12.92,
                 1e-9);
-    const Image<vec4> texture = decode_texture(bytes, "texture.png");
-    EXPECT_NEAR(texture.at(0, 0).x, 100.0 / 65535 / 12.92, 1e-9);
-    EXPECT_NEAR(texture.at(1, 0).w, 30000.0 / 65535, 1e-7);
+    const Texels texture = decode_texture(bytes, "texture.png");
+    EXPECT_NEAR(texel_at(texture, 0, 0).x, 100.0 / 65535 / 12.92, 1e-9);
+    EXPECT_NEAR(texel_at(texture, 1, 0).w, 30000.0 / 65535, 1e-7);
 }
 
 TEST(Gobo, BlackOnesAreSaid) {

@@ -13,8 +13,9 @@ namespace {
 // Red, green, blue, white: two by two.
 Texture four_texels() {
     Texture texture;
-    texture.texels = Image<vec4>({2, 2});
-    texture.texels.pixels = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 1, 0}};
+    Image<vec4> image({2, 2});
+    image.pixels = {{1, 0, 0, 1}, {0, 1, 0, 1}, {0, 0, 1, 1}, {1, 1, 1, 0}};
+    texture.texels = shared_texels(std::move(image));
     return texture;
 }
 
@@ -82,11 +83,11 @@ TEST(Texture, TransformMovesTheCoordinates) {
 }
 
 TEST(ImageFile, PngBecomesLinearLight) {
-    const Image<vec4> image = decode_texture(png_of({2, 1}, {{255, 188, 0, 255}, {10, 0, 128, 51}}), "test");
-    ASSERT_EQ(image.size, ivec2(2, 1));
+    const Texels image = decode_texture(png_of({2, 1}, {{255, 188, 0, 255}, {10, 0, 128, 51}}), "test");
+    ASSERT_EQ(image.size(), ivec2(2, 1));
     // IEC 61966-2-1: sRGB 188 is 0.5029 of the light, 10 is 10/255/12.92.
-    expect_near(image.at(0, 0), {1, 0.502886f, 0, 1}, 1e-5f);
-    expect_near(image.at(1, 0), {10 / 255.0f / 12.92f, 0, 0.215861f, 0.2f}, 1e-5f);
+    expect_near(texel_at(image, 0, 0), {1, 0.502886f, 0, 1}, 1e-5f);
+    expect_near(texel_at(image, 1, 0), {10 / 255.0f / 12.92f, 0, 0.215861f, 0.2f}, 1e-5f);
 }
 
 TEST(ImageFile, RefusesWhatItCannotDecode) {
@@ -104,11 +105,30 @@ TEST(ImageFile, HalvedKeepsTheLight) {
     Image<vec4> image({4, 2}, vec4(1, 0, 0, 1));
     for (int y = 0; y < 2; ++y) image.at(2, y) = image.at(3, y) = {0, 0, 1, 0.5f};
     image.at(3, 0) = {1, 1, 1, 0}; // not seen: its color must not bleed
-    const Image<vec4> half = halved(image);
-    ASSERT_EQ(half.size, ivec2(2, 1));
-    expect_near(half.at(0, 0), {1, 0, 0, 1}, 1e-5f);
-    expect_near(half.at(1, 0), {0, 0, 1, 0.375f}, 1e-5f);
-    EXPECT_EQ(halved(Image<vec4>({1, 5})).size, ivec2(1, 2));
+    const Texels half = halved(Texels{{}, image});
+    ASSERT_EQ(half.size(), ivec2(2, 1));
+    expect_near(texel_at(half, 0, 0), {1, 0, 0, 1}, 1e-5f);
+    expect_near(texel_at(half, 1, 0), {0, 0, 1, 0.375f}, 1e-5f);
+    EXPECT_EQ(halved(Texels{{}, Image<vec4>({1, 5})}).size(), ivec2(1, 2));
+
+    // Codes are averaged as light, and stay codes.
+    Texels codes{Image<Code4>({2, 2}, Code4(255)), {}};
+    codes.codes.at(0, 0) = {0, 0, 0, 255}, codes.codes.at(1, 1) = {0, 0, 0, 255};
+    EXPECT_EQ(halved(codes).codes.at(0, 0), Code4(188, 188, 188, 255));
+}
+
+// A texture of 8-bit codes looks as one of the same linear colors does.
+TEST(Texture, CodesAreLookedUpAsLinearColors) {
+    const Texels codes = decode_texture(png_of({2, 2}, {{9, 80, 7, 255}, {200, 1, 3, 90}, {}, {77, 5, 61, 4}}), "test");
+    ASSERT_TRUE(codes.linear.empty());
+    Image<vec4> linear({2, 2});
+    for (int i = 0; i < 4; ++i) linear.pixels[i] = texel_at(codes, i % 2, i / 2);
+    Texture texture, same;
+    texture.texels = std::make_shared<const Texels>(codes), same.texels = shared_texels(linear);
+    for (const vec2 uv : {vec2(0.3f, 0.4f), vec2(0.9f, 0.1f), vec2(-3.2f, 7.77f)}) {
+        EXPECT_EQ(sample_texture(texture, uv), sample_texture(same, uv));
+        EXPECT_EQ(sample_alpha(texture, uv), sample_alpha(same, uv));
+    }
 }
 }
 }

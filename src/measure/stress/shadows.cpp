@@ -185,9 +185,10 @@ StressScene glass(double alpha) {
 StressScene cut_out(double share) {
     Material material;
     material.alpha_mode = AlphaMode::mask, material.base_texture = 0;
+    Image<vec4> image(ivec2(64, 1), vec4(1));
+    for (int x = 0; x < static_cast<int>(64 * share); ++x) image.at(x, 0).w = 0;
     Texture texture;
-    texture.texels = Image<vec4>(ivec2(64, 1), vec4(1)), texture.nearest = true;
-    for (int x = 0; x < static_cast<int>(64 * share); ++x) texture.texels.at(x, 0).w = 0;
+    texture.texels = shared_texels(std::move(image)), texture.nearest = true;
     StressScene scene = stress_scene({dust()}, {slanting}, aside);
     scene.scene->materials = {material}, scene.scene->textures = {texture};
     scene.scene->meshes = {quad({-1.5f, 2, -3}, {3, 0, 0}, {0, 0, 6}, 0)};

@@ -24,6 +24,20 @@ struct GltfImage {
     int buffer_view = -1;
 };
 
+// A material's reference to a texture.
+struct GltfTextureUse {
+    int texture = -1, uv_set = 0;
+    mat3 transform{1};
+};
+
+// A decoded image: shared by all textures that show it, and reduced in place.
+struct GltfTexels {
+    std::shared_ptr<Texels> texels; // null = cannot be used
+    int side = 0;                   // the longer one in the file
+};
+
+inline constexpr int largest_texture_side = 8192;
+
 struct GltfDocument {
     std::filesystem::path path, directory;
     std::string file;                 // path for messages
@@ -40,10 +54,12 @@ struct GltfDocument {
     std::vector<std::vector<int>> instances; // of each node
     std::map<int, int> materials, skins;
     std::map<int, std::shared_ptr<const IesProfile>> profiles;
-    std::map<std::string, int> textures; // keyed by image, sampler and transform
-    std::map<std::string, int> counts;   // warnings given once, with a count
+    std::map<std::string, int> textures;     // keyed by image, sampler and transform
+    std::map<int, GltfTexels> decoded;       // by image
+    int texture_side = largest_texture_side; // no image is larger
+    std::map<std::string, int> counts;       // warnings given once, with a count
     // Totals so far:
-    size_t texels = 0, triangles = 0;
+    size_t triangles = 0;
     size_t morphed = 0; // vertices of morph targets
     size_t posed = 0;   // joints and morph targets of instances
 
@@ -83,6 +99,9 @@ std::vector<uint32_t> gltf_integers(GltfDocument& document, int accessor, const 
 
 // material.cpp, mesh.cpp, nodes.cpp, animation.cpp: add parts to the scene.
 int gltf_material(GltfDocument& document, int material, int& uv_set);
+// textures.cpp: index of the scene's texture; -1 when it cannot be used.
+int gltf_texture(GltfDocument& document, const GltfTextureUse& use);
+void note_reduced_textures(GltfDocument& document);
 const std::vector<int>& gltf_mesh(GltfDocument& document, int mesh);
 void add_gltf_nodes(GltfDocument& document);
 void add_gltf_cameras_and_lights(GltfDocument& document);

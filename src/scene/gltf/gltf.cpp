@@ -40,6 +40,7 @@ void load_gltf(const std::filesystem::path& file, const LoadOptions& options, Sc
     add_gltf_nodes(document);
     add_gltf_cameras_and_lights(document);
     add_gltf_animations(document);
+    note_reduced_textures(document);
     for (const auto& [what, times] : document.counts) document.warn("", what + " (" + std::to_string(times) + ")");
 }
 }

@@ -8,6 +8,7 @@
 #include "scene/images/radiance_file.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <type_traits>
@@ -49,41 +50,47 @@ void check_length(std::string_view bytes, std::string_view where) {
     refuse(where, reason == "outofdata" ? "the image is truncated" : "the image is truncated or damaged");
 }
 
-// sRGB codes of 8 or 16 bits to linear light.
-template<class Code> const std::vector<float>& linear_table() {
-    constexpr size_t last = std::numeric_limits<Code>::max();
-    static const std::vector<float> table = [] {
-        std::vector<float> values(last + 1);
-        for (size_t i = 0; i <= last; ++i) values[i] = srgb_decoded(static_cast<float>(i) / static_cast<float>(last));
+// Linear light of each sRGB code of 8 or 16 bits.
+const float* lights_of(const uint8_t*) { return srgb_lights().data(); }
+const float* lights_of(const uint16_t*) {
+    static const std::vector<float> lights = [] {
+        std::vector<float> values(65536);
+        for (size_t i = 0; i < values.size(); ++i) values[i] = srgb_decoded(static_cast<float>(i) / 65535.0f);
         return values;
     }();
-    return table;
+    return lights.data();
 }
 
 // Calls `visit` with the index, color in 0..1 and alpha of every texel; `linear`: the color is not sRGB.
 template<class Code, class Visit> void visit_codes(const Code* codes, ivec2 size, bool linear, const Visit& visit) {
     constexpr auto last = static_cast<float>(std::numeric_limits<Code>::max());
-    const std::vector<float>& table = linear_table<Code>();
-    const auto color = [&](Code code) { return linear ? static_cast<float>(code) / last : table[code]; };
+    const float* lights = lights_of(codes);
+    const auto color = [&](Code code) { return linear ? static_cast<float>(code) / last : lights[code]; };
     for (size_t i = 0; i < static_cast<size_t>(size.x) * size.y; ++i, codes += 4)
         visit(i, vec3(color(codes[0]), color(codes[1]), color(codes[2])), static_cast<float>(codes[3]) / last);
 }
 
-// The same for a PNG or JPEG; PNGs of 16 bits keep them. Throws Error (refused) naming `where`.
-template<class Visit>
-void visit_texels(std::string_view bytes, std::string_view where, bool linear, const Visit& visit) {
+// Calls `use` with the RGBA codes of a PNG or JPEG, which have 16 bits if the PNG does, and its size. Throws Error
+// (refused) naming `where`.
+template<class Use> void with_codes(std::string_view bytes, std::string_view where, const Use& use) {
     const int length = static_cast<int>(bytes.size());
     ivec2 size(0);
     int channels;
-    const auto visit_all = [&](auto* codes) {
+    const auto checked = [&](auto* codes) {
         const std::unique_ptr<std::remove_pointer_t<decltype(codes)>, Free> data(codes);
         if (!data) refuse_damaged(where);
-        visit_codes(codes, size, linear, visit);
+        use(codes, size);
     };
     if (stbi_is_16_bit_from_memory(start(bytes), length))
-        visit_all(stbi_load_16_from_memory(start(bytes), length, &size.x, &size.y, &channels, 4));
+        checked(stbi_load_16_from_memory(start(bytes), length, &size.x, &size.y, &channels, 4));
     else
-        visit_all(stbi_load_from_memory(start(bytes), length, &size.x, &size.y, &channels, 4));
+        checked(stbi_load_from_memory(start(bytes), length, &size.x, &size.y, &channels, 4));
+}
+
+// visit_codes() for a PNG or JPEG.
+template<class Visit>
+void visit_texels(std::string_view bytes, std::string_view where, bool linear, const Visit& visit) {
+    with_codes(bytes, where, [&](auto* codes, ivec2 size) { visit_codes(codes, size, linear, visit); });
 }
 
 // In the display window, black where the file has no pixels.
@@ -161,12 +168,23 @@ ivec2 image_size(std::string_view bytes, std::string_view where) {
     return size;
 }
 
-Image<vec4> decode_texture(std::string_view bytes, std::string_view where) {
+Texels decode_texture(std::string_view bytes, std::string_view where) {
     const ImageFormat format = image_format(bytes);
     if (format != ImageFormat::png && format != ImageFormat::jpeg) refuse(where, "the image is neither PNG nor JPEG");
-    Image<vec4> image(image_size(bytes, where));
-    visit_texels(bytes, where, false, [&](size_t i, vec3 color, float alpha) { image.pixels[i] = {color, alpha}; });
-    return image;
+    image_size(bytes, where);
+    Texels texels;
+    with_codes(bytes, where, [&](auto* codes, ivec2 size) {
+        if constexpr (sizeof *codes == 1) {
+            texels.codes = Image<Code4>(size);
+            std::memcpy(texels.codes.pixels.data(), codes, texels.bytes());
+        } else {
+            texels.linear = Image<vec4>(size);
+            visit_codes(codes, size, false, [&](size_t i, vec3 color, float alpha) {
+                texels.linear.pixels[i] = {color, alpha};
+            });
+        }
+    });
+    return texels;
 }
 
 Image<vec3> decode_image(std::string_view bytes, std::string_view where, std::string& note) {
@@ -183,9 +201,8 @@ Image<vec3> decode_image(std::string_view bytes, std::string_view where, std::st
             add_note(note, "the image is black");
         return image;
     }
-    const Image<vec4> texels = decode_texture(bytes, where);
-    Image<vec3> image(texels.size);
-    for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = vec3(texels.pixels[i]) * texels.pixels[i].w;
+    Image<vec3> image(image_size(bytes, where));
+    visit_texels(bytes, where, false, [&](size_t i, vec3 color, float alpha) { image.pixels[i] = color * alpha; });
     return image;
 }
 
@@ -217,20 +234,5 @@ ReducedImage decode_reduced(std::string_view bytes, bool linear, int largest, in
                      [&](size_t i, vec3 color, float alpha) { add_to_block(picture, i, color * alpha); });
     }
     return picture;
-}
-
-Image<vec4> halved(const Image<vec4>& image) {
-    Image<vec4> result(glm::max(image.size / 2, ivec2(1)));
-    for (int y = 0; y < result.size.y; ++y)
-        for (int x = 0; x < result.size.x; ++x) {
-            vec4 sum(0), plain(0);
-            for (int corner = 0; corner < 4; ++corner) {
-                const vec4 texel = image.at(std::min(2 * x + (corner & 1), image.size.x - 1),
-                                            std::min(2 * y + (corner >> 1), image.size.y - 1));
-                sum += vec4(vec3(texel) * texel.w, texel.w), plain += texel;
-            }
-            result.at(x, y) = sum.w > 0 ? vec4(vec3(sum) / sum.w, sum.w / 4) : plain / 4.0f;
-        }
-    return result;
 }
 }

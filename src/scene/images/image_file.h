@@ -1,6 +1,6 @@
 // Decodes PNG, JPEG, Radiance and OpenEXR images to linear light. The only user of stb_image.
 #pragma once
-#include "base/image.h"
+#include "scene/images/texels.h"
 
 #include <string>
 #include <string_view>
@@ -16,8 +16,8 @@ ImageFormat image_format(std::string_view bytes);
 // Size from the header alone. Throws Error (refused) naming `where` when there is none or a side is over the limit.
 ivec2 image_size(std::string_view bytes, std::string_view where);
 
-// sRGB codes of 8 or 16 bits to linear color, alpha as it is. Throws Error (refused) naming `where`.
-Image<vec4> decode_texture(std::string_view bytes, std::string_view where);
+// A PNG or JPEG of sRGB colors of 8 or 16 bits. Throws Error (refused) naming `where`.
+Texels decode_texture(std::string_view bytes, std::string_view where);
 
 // Decodes an image for backgrounds: sRGB PNG or JPEG, Radiance .hdr or OpenEXR (its display window, black where there
 // are no pixels). Negative values are set to 0. `note` reports these, primaries other than Rec.709, and an image that
@@ -37,7 +37,4 @@ struct ReducedImage {
 // `where`.
 ReducedImage decode_reduced(std::string_view bytes, bool linear, int largest, int most, std::string_view where,
                             std::string& note);
-
-// Half the size, each texel the mean of four (alpha-weighted color); odd edges repeat their last texel.
-Image<vec4> halved(const Image<vec4>& image);
 }

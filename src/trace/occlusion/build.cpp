@@ -8,7 +8,7 @@ namespace tyndall {
 namespace {
 const Texture* usable_texture(const Scene& scene, int index) {
     if (index < 0 || index >= static_cast<int>(scene.textures.size())) return nullptr;
-    return scene.textures[index].texels.empty() ? nullptr : &scene.textures[index];
+    return scene.textures[index].texels ? &scene.textures[index] : nullptr;
 }
 
 bool in_range(vec3 p) { return is_finite(p) && max_component(glm::abs(p)) <= largest_coordinate; }

@@ -105,8 +105,9 @@ TEST(OccludersAlpha, OpaqueBlendBlocks) {
 Texture half_clear(float clear_alpha) {
     Texture texture;
     texture.nearest = true;
-    texture.texels = Image<vec4>(ivec2(2, 1), vec4(1));
-    texture.texels.at(0, 0) = vec4(1, 0.5f, 0.25f, clear_alpha);
+    Image<vec4> image(ivec2(2, 1), vec4(1));
+    image.at(0, 0) = vec4(1, 0.5f, 0.25f, clear_alpha);
+    texture.texels = shared_texels(std::move(image));
     return texture;
 }
 
