@@ -52,8 +52,9 @@ public:
     std::string string_or(std::string_view key, std::string_view otherwise) const;
 };
 
-// Parses text (comments allowed; duplicate keys, depth over 64 and non-finite numbers refused). Throws Error (refused).
-Json parse_json(std::string_view text, std::string_view file);
+// Parses text (comments allowed; duplicate keys, depth over 64, non-finite numbers and more than `max_values` values
+// refused). Throws Error (refused).
+Json parse_json(std::string_view text, std::string_view file, size_t max_values = size_t{1} << 20);
 
 // Checks a document against a schema (draft-07). Throws Error (refused) naming the file, the JSON pointer and what was
 // expected, with the nearest known name as a hint for an unknown key.

@@ -11,7 +11,6 @@
 namespace tyndall {
 namespace {
 constexpr size_t max_levels = 64;
-constexpr size_t max_values = size_t{1} << 20;
 
 std::string position_text(std::string_view text, size_t position) {
     std::string_view before = text.substr(0, position ? std::min(position - 1, text.size()) : 0);
@@ -35,7 +34,8 @@ std::string_view plain_message(std::string_view message) {
 
 class TreeBuilder : public nlohmann::json_sax<nlohmann::json> {
 public:
-    TreeBuilder(std::string_view text, std::string_view file) : text_(text), file_(file) {}
+    TreeBuilder(std::string_view text, std::string_view file, size_t max_values)
+        : text_(text), file_(file), max_values_(max_values) {}
     Json root;
 
     bool null() override { return add(Json::Kind::null), true; }
@@ -85,7 +85,7 @@ private:
 
     // The returned reference stays valid while the value is open: its parent grows only after it is complete.
     Json& add(Json::Kind kind) {
-        if (++count_ > max_values) refuse(file_, "more than " + std::to_string(max_values) + " values");
+        if (++count_ > max_values_) refuse(file_, "more than " + std::to_string(max_values_) + " JSON values");
         Json* place = &root;
         if (!levels_.empty()) {
             Json& parent = *levels_.back().value;
@@ -116,12 +116,12 @@ private:
 
     std::string_view text_, file_;
     std::vector<Level> levels_;
-    size_t count_ = 0;
+    size_t max_values_, count_ = 0;
 };
 }
 
-Json parse_json(std::string_view text, std::string_view file) {
-    TreeBuilder builder(text, file);
+Json parse_json(std::string_view text, std::string_view file, size_t max_values) {
+    TreeBuilder builder(text, file, max_values);
     constexpr bool nothing_behind = true, comments = true;
     nlohmann::json::sax_parse(text.begin(), text.end(), &builder, nlohmann::json::input_format_t::json, nothing_behind,
                               comments);

@@ -1,31 +1,11 @@
 #include "volume/vdb/memory.h"
 
-#include "base/control_group.h"
 #include "base/error.h"
-#include "base/process.h"
+#include "base/memory.h"
 #include "volume/bricks/sparse_volume.h"
 #include "volume/bricks/voxel_mask.h"
 
-#include <sys/resource.h>
-
-#include <sstream>
-
 namespace tyndall {
-namespace {
-// Memory available to this process: the minimum of the machine's, its cgroup's and its own limit, minus an eighth.
-uint64_t available_memory() {
-    uint64_t most = physical_memory();
-    rlimit limit{};
-    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
-        most = std::min<uint64_t>(most, limit.rlim_cur);
-    for (const std::string& line : control_group_lines("memory.max")) {
-        uint64_t group = 0;
-        if (std::istringstream(line) >> group) most = std::min(most, group);
-    }
-    return most - most / 8;
-}
-}
-
 uint64_t memory_needed(const VdbTreeCounts& counts) {
     const uint64_t leaf = 128 + sizeof(Leaf) + sizeof(VoxelMask) + sizeof(uint64_t);
     return counts.leaves * leaf + counts.lower_nodes * (4096 * 8 + 1100) + counts.upper_nodes * (32768 * 8 + 8300) +

@@ -139,7 +139,7 @@ TEST(JsonParse, RefusesZeroBytesInStrings) {
 TEST(JsonParse, RefusesFloodsOfValues) {
     std::string text = "[0";
     for (int i = 0; i < 1 << 20; ++i) text += ",0";
-    EXPECT_THAT(refusal(text + "]"), HasSubstr("more than 1048576 values"));
+    EXPECT_THAT(refusal(text + "]"), HasSubstr("more than 1048576 JSON values"));
 }
 
 TEST(JsonFormat, ShortestFormThatReadsBackTheSame) {

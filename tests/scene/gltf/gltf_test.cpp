@@ -241,6 +241,22 @@ TEST(Gltf, RoundedLimitsAreAccepted) {
         EXPECT_TRUE(has_warning(scene, part)) << part;
 }
 
+// CAD models have tens of thousands of parts.
+TEST(Gltf, ManyPartsMakeManyValues) {
+    GltfBuilder gltf = triangle_gltf();
+    std::string nodes, roots;
+    for (int i = 0; i < 62000; ++i) {
+        nodes += std::string(i ? "," : "") + R"({"mesh":0,"translation":[1,2,3],"rotation":[0,0,0,1],"scale":[1,1,1]})";
+        roots += (i ? "," : "") + std::to_string(i);
+    }
+    gltf.members["nodes"] = "[" + nodes + "]";
+    gltf.members["scenes"] = R"([{"nodes":[)" + roots + "]}]";
+    const TempFolder folder;
+    const LoadResult answer = load(folder.put("parts.gltf", gltf.json()));
+    EXPECT_TRUE(answer.loaded) << answer.message;
+    EXPECT_EQ(answer.scene.instances.size(), 62000u);
+}
+
 // Blender 3.4 writes a point of 1000 W as 54351.4, 79.577 or 1000, and a sun of 3 as 2049, 3 or 3.
 TEST(Gltf, LightUnits) {
     for (const auto& [units, point, sun] :
