@@ -1,6 +1,8 @@
 // Triangles of instances, moved to world space, checked, and built into an Embree scene.
 #include "base/error.h"
+#include "base/memory.h"
 #include "base/parallel.h"
+#include "base/text.h"
 #include "scene/scene.h"
 #include "trace/occlusion/scene.h"
 
@@ -83,12 +85,30 @@ void attach(RTCDevice device, OccluderSet& set, const OccluderGeometry& geometry
 }
 }
 
+void check_triangles_fit(const Scene& scene, const std::vector<int>& instances, uint64_t bytes_each) {
+    constexpr uint64_t bytes_of_instance = 1000;
+    uint64_t triangles = 0, needed = bytes_of_instance * instances.size();
+    for (const int i : instances) {
+        const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+        triangles += mesh.triangles.size();
+        needed += bytes_each * mesh.triangles.size() + sizeof(vec3) * mesh.positions.size();
+    }
+    const uint64_t available = available_memory();
+    if (needed <= available) return;
+    fail(ExitCode::out_of_memory, scene.file.string(),
+         count_text(triangles, "triangle") + " in " + count_text(instances.size(), "instance") + " take about " +
+             bytes_text(static_cast<double>(needed)) + " of memory, " + bytes_text(static_cast<double>(available)) +
+             " are available");
+}
+
 OccluderSet::~OccluderSet() {
     if (scene) rtcReleaseScene(scene);
 }
 
 std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::vector<int> instances,
                                                      std::vector<Placement> placements) {
+    constexpr uint64_t bytes_of_triangle = 100; // while Embree builds its tree; 70 afterwards
+    check_triangles_fit(scene, instances, bytes_of_triangle);
     auto set = std::make_shared<OccluderSet>();
     set->geometries.resize(instances.size());
     std::vector<uint64_t> dropped(instances.size(), 0);

@@ -85,6 +85,10 @@ bool Occluders::shares_with(const Occluders& other) const {
 bool Occluders::has_alpha() const { return impl_->still->has_alpha || impl_->moving->has_alpha; }
 
 std::vector<ShadowTriangle> Occluders::shadow_triangles() const {
+    constexpr uint64_t bytes_of_triangle = 250; // with what is made of these, and what is traced
+    std::vector<int> instances = impl_->still->instances;
+    instances.insert(instances.end(), impl_->moving->instances.begin(), impl_->moving->instances.end());
+    check_triangles_fit(*impl_->scene, instances, bytes_of_triangle);
     std::vector<ShadowTriangle> result;
     result.reserve(triangle_count());
     for (const OccluderSet* set : {impl_->still.get(), impl_->moving.get()})

@@ -92,6 +92,10 @@ struct Occluders::Impl {
     std::shared_ptr<const ShadowMesh> mesh;
 };
 
+// Throws Error (out_of_memory) if the triangles of instances would not fit in memory, at so many bytes each: every
+// instance has its own.
+void check_triangles_fit(const Scene& scene, const std::vector<int>& instances, uint64_t bytes_each);
+
 // Triangles of some instances with their placements, ready to trace. Throws Error.
 std::shared_ptr<const OccluderSet> make_occluder_set(const Scene& scene, std::vector<int> instances,
                                                      std::vector<Placement> placements);

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "scene/light.h"
 #include "scene/scene.h"
+#include "support/expect.h"
 #include "support/meshes.h"
 #include "support/random_points.h"
 #include "support/threads.h"
@@ -10,6 +11,7 @@
 #include "trace/shadows/shadow_rays.h"
 #include "trace/small_scenes.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -332,6 +334,17 @@ TEST(Occluders, InstructionSetIsFixedOnceUsed) {
     EXPECT_NO_THROW(set_embree_isa("avx2"));
     EXPECT_THROW(set_embree_isa("avx512"), Error);
     EXPECT_THROW(set_embree_isa("sse9"), Error);
+}
+
+// A forest that no machine holds: refused before any of it is made.
+TEST(Occluders, MoreThanTheMemoryThereIs) {
+    Scene scene;
+    scene.file = "forest.json";
+    add_mesh(scene, box_of(vec3(-1), vec3(1)));
+    scene.meshes[0].triangles.resize(2000000, glm::uvec3(0, 1, 2));
+    scene.instances.assign(100000, scene.instances[0]);
+    EXPECT_THAT(error_message(ExitCode::out_of_memory, [&] { occluders_of(scene); }),
+                testing::StartsWith("forest.json: 200000000000 triangles in 100000 instances take about "));
 }
 
 TEST(Occluders, MeshesThatChangeTheirShapeAreBuiltAnew) {
