@@ -7,10 +7,10 @@
 
 namespace tyndall {
 namespace {
-constexpr std::array<std::string_view, 7> read = {
-    "KHR_lights_punctual",   "KHR_texture_transform",   "KHR_materials_emissive_strength",
-    "KHR_mesh_quantization", "EXT_mesh_gpu_instancing", "KHR_materials_pbrSpecularGlossiness",
-    "EXT_lights_ies"};
+constexpr std::array<std::string_view, 8> read = {
+    "KHR_lights_punctual",   "KHR_texture_transform",     "KHR_materials_emissive_strength",
+    "KHR_mesh_quantization", "EXT_mesh_gpu_instancing",   "KHR_materials_pbrSpecularGlossiness",
+    "EXT_lights_ies",        "KHR_materials_transmission"};
 constexpr std::array<std::string_view, 3> compressed = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
                                                         "KHR_meshopt_compression"};
 

@@ -64,6 +64,20 @@ vec3 emission_of(const tinygltf::Material& source) {
     if (extension != source.extensions.end()) strength = number_in(extension->second, "emissiveStrength", 1);
     return vec3(glm::min(dvec3(factor[0], factor[1], factor[2]) * strength, dvec3(1e30)));
 }
+
+// An opaque material of glass is blended instead, so that light gets through. One that emits stays a mesh light.
+void make_glass(GltfDocument& document, const tinygltf::Material& source, Material& material) {
+    constexpr double min_alpha = 0.05; // keeps clear glass visible
+    const auto found = source.extensions.find("KHR_materials_transmission");
+    if (found == source.extensions.end() || material.alpha_mode != AlphaMode::opaque) return;
+    const double factor = number_in(found->second, "transmissionFactor", 0);
+    if (factor <= 0) return;
+    if (found->second.Has("transmissionTexture") || material.emission != vec3(0))
+        return document.count("transmissive materials with a texture of it, or with emission, stay opaque");
+    material.alpha_mode = AlphaMode::blend;
+    material.alpha = static_cast<float>(std::max(1 - factor, min_alpha));
+    document.count("transmissive materials are shown as partly transparent, without refraction");
+}
 }
 
 int gltf_material(GltfDocument& document, int index, int& uv_set) {
@@ -91,6 +105,7 @@ int gltf_material(GltfDocument& document, int index, int& uv_set) {
     if (source.alphaMode == "MASK") material.alpha_mode = AlphaMode::mask;
     if (source.alphaMode == "BLEND") material.alpha_mode = AlphaMode::blend;
     material.alpha_cutoff = static_cast<float>(source.alphaCutoff);
+    make_glass(document, source, material);
     document.scene->materials.push_back(material);
     return known->second;
 }

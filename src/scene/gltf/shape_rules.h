@@ -121,7 +121,9 @@ constexpr Rule metallic_roughness[] = {numbers("baseColorFactor", 4, 0, 1e30), o
                                        object("metallicRoughnessTexture", texture_info)};
 constexpr Rule emissive_strength[] = {number("emissiveStrength", 0, 1e30)};
 constexpr Rule specular_glossiness[] = {numbers("diffuseFactor", 4, 0, 1e30), object("diffuseTexture", texture_info)};
+constexpr Rule transmission[] = {number("transmissionFactor", 0, 1e30), object("transmissionTexture", texture_info)};
 constexpr Rule material_extensions[] = {object("KHR_materials_emissive_strength", emissive_strength),
+                                        object("KHR_materials_transmission", transmission),
                                         object("KHR_materials_pbrSpecularGlossiness", specular_glossiness)};
 constexpr std::string_view alpha_modes[] = {"OPAQUE", "MASK", "BLEND"};
 constexpr Rule material[] = {text("name"),

@@ -1,4 +1,4 @@
-// Textures that share and outgrow memory.
+// Textures that share and outgrow memory, and materials of glass.
 #include "scene/images.h"
 #include "support/expect.h"
 #include "support/gltf_builder.h"
@@ -85,6 +85,27 @@ TEST(GltfMaterials, TexturesBeyondTheMemoryAreReducedEvenly) {
     const Scene whole = loaded(gltf, options);
     EXPECT_EQ(size_of(whole, 3), ivec2(16, 16));
     EXPECT_FALSE(has_warning(whole, "reduced"));
+}
+
+TEST(GltfMaterials, GlassLetsLightThrough) {
+    const auto glass = [](const std::string& factor, const std::string& more = "") {
+        return R"({"extensions":{"KHR_materials_transmission":{"transmissionFactor":)" + factor + "}}" + more + "}";
+    };
+    GltfBuilder gltf =
+        with_materials({glass("1"), glass("0.25", R"(,"pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.5]})"),
+                        glass("0"), glass("1", R"(,"emissiveFactor":[1,1,1])"), glass("1", R"(,"alphaMode":"MASK")")});
+    gltf.members["extensionsUsed"] = R"(["KHR_materials_transmission"])";
+    const Scene scene = loaded(gltf);
+    ASSERT_EQ(scene.materials.size(), 5u);
+    EXPECT_EQ(scene.materials[0].alpha_mode, AlphaMode::blend);
+    EXPECT_FLOAT_EQ(scene.materials[0].alpha, 0.05f) << "it stays visible";
+    EXPECT_FLOAT_EQ(scene.materials[1].alpha, 0.75f) << "opaque materials have no alpha of their own";
+    EXPECT_EQ(scene.materials[2].alpha_mode, AlphaMode::opaque);
+    EXPECT_EQ(scene.materials[3].alpha_mode, AlphaMode::opaque) << "it stays a light";
+    EXPECT_EQ(scene.materials[4].alpha_mode, AlphaMode::mask);
+    EXPECT_TRUE(has_warning(scene, "shown as partly transparent, without refraction (2)"));
+    EXPECT_TRUE(has_warning(scene, "stay opaque (1)"));
+    EXPECT_FALSE(has_warning(scene, "KHR_materials_transmission is ignored"));
 }
 }
 }
