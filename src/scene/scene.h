@@ -215,6 +215,7 @@ struct Scene {
     std::vector<Instance> instances;
     std::vector<Material> materials;
     std::vector<Texture> textures;
+    std::vector<std::string> animations; // names of the glTF's, played or not
     std::vector<CameraSource> cameras;
     int camera = 0; // the default one
     std::vector<LightSource> lights;

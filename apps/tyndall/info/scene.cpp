@@ -105,6 +105,7 @@ std::string content_json(const std::filesystem::path& file, const char* kind, co
                       {"materials", scene.materials.size()},
                       {"textures", scene.textures.size()},
                       {"bounds", world_box(totals.bounds, scene.origin)},
+                      {"animations", scene.animations},
                       {"animated_nodes", totals.animated_nodes},
                       {"deforming_instances", totals.deforming},
                       {"animation_seconds", totals.last_key},
@@ -140,6 +141,7 @@ std::string content_text(const Scene& scene) {
         text += "  animation     " +
                 (totals.animated_nodes ? count_text(totals.animated_nodes, "node") + ", " : std::string()) +
                 seconds_text(double{totals.last_key}) + "\n";
+    for (const std::string& name : scene.animations) text += "  clip          " + printable(name, 80) + "\n";
     for (const CameraSource& camera : scene.cameras)
         text += "  camera        " + printable(camera.name.empty() ? "(no name)" : camera.name, 80) +
                 (camera.ortho_height > 0 ? ", orthographic"

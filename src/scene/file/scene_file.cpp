@@ -78,15 +78,28 @@ void note_hidden_lights(Scene& scene) {
     }
 }
 
+// The glTF, its animations and whether its lights are used.
+void read_gltf(const Field& root, Scene& scene, LoadOptions options) {
+    const Field gltf = root.member("gltf"), animations = root.member("gltf_animations");
+    const Field lights = root.member("gltf_lights");
+    for (const Field& field : {animations, lights})
+        if (field && !gltf) refuse(field, "has no effect without a glTF");
+    if (!gltf) return;
+    if (animations) {
+        options.animations.emplace();
+        for (const Json& name : animations.json->items) options.animations->push_back(name.string);
+    }
+    load_gltf(named_file(gltf, scene), options, scene);
+    for (size_t i = 0; animations && i < options.animations->size(); ++i)
+        if (const std::string& name = (*options.animations)[i]; !std::ranges::count(scene.animations, name))
+            refuse(animations.item(i), unknown_name("animation", name, scene.animations));
+    if (lights && !lights.json->boolean) scene.lights.clear();
+}
+
 void read_scene_document(const Json& document, Scene& scene, const LoadOptions& options) {
     const Field root{&document, scene.file.string(), ""};
     read_general(root, scene);
-    if (const Field gltf = root.member("gltf")) {
-        load_gltf(named_file(gltf, scene), options, scene);
-        if (!document.boolean_or("gltf_lights", true)) scene.lights.clear();
-    } else if (const Field lights = root.member("gltf_lights")) {
-        refuse(lights, "has no effect without a glTF");
-    }
+    read_gltf(root, scene, options);
     scene.origin = far_origin(root, scene);
     read_cameras(root, scene);
     read_objects(root, scene);

@@ -1,7 +1,9 @@
-// Converts animations to keys of nodes. All of them play together; if two animate the same property, the first one
-// wins.
+// Converts animations to keys of nodes. They play together, except those that animate what an earlier one does.
 #include "base/error.h"
 #include "scene/gltf/document.h"
+
+#include <algorithm>
+#include <set>
 
 namespace tyndall {
 namespace {
@@ -105,9 +107,41 @@ void add_channel(GltfDocument& document, const tinygltf::AnimationChannel& chann
 }
 }
 
+namespace {
+using Property = std::pair<int, std::string>; // a node of the glTF and the path of a channel
+
+std::set<Property> properties_of(const GltfDocument& document, const tinygltf::Animation& animation) {
+    std::set<Property> properties;
+    for (const tinygltf::AnimationChannel& channel : animation.channels)
+        if (channel.target_node >= 0 && document.nodes[channel.target_node] >= 0)
+            properties.insert({channel.target_node, channel.target_path});
+    return properties;
+}
+
+bool is_chosen(const GltfDocument& document, const std::string& name) {
+    const auto& chosen = document.options.animations;
+    return !chosen || std::ranges::count(*chosen, name) > 0;
+}
+}
+
 void add_gltf_animations(GltfDocument& document) {
+    std::map<Property, std::string> played; // and the name of the animation
     for (size_t a = 0; a < document.model.animations.size(); ++a) {
         const tinygltf::Animation& animation = document.model.animations[a];
+        const std::string name = animation.name.empty() ? "animation " + std::to_string(a) : animation.name;
+        document.scene->animations.push_back(name);
+        if (!is_chosen(document, name)) continue;
+
+        // Parts of two clips give poses of neither, so a clip plays as a whole or not at all.
+        const std::set<Property> properties = properties_of(document, animation);
+        const auto shared = std::ranges::find_if(properties, [&](const auto& one) { return played.contains(one); });
+        if (shared != properties.end()) {
+            document.warn(gltf_pointer("animations", a), "animation " + quote_json(name) +
+                                                             " is not played: it animates what " +
+                                                             quote_json(played[*shared]) + " animates");
+            continue;
+        }
+        for (const Property& property : properties) played[property] = name;
         for (const tinygltf::AnimationChannel& channel : animation.channels)
             add_channel(document, channel, animation.samplers[channel.sampler],
                         gltf_pointer("animations", a, "samplers/") + std::to_string(channel.sampler));
