@@ -70,6 +70,7 @@ void make_unit(Keyed<quat>& keys) {
 }
 
 template<class T> void play(GltfDocument& document, const Keyed<T>& keys, Keyed<T>& target) {
+    if (keys.times.empty()) return document.count("animations without keys are ignored");
     if (!target.times.empty()) return document.count("animations of properties that are already animated are ignored");
     target = keys;
 }

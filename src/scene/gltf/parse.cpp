@@ -16,6 +16,12 @@ void append_number(std::string& text, double number) {
     text += format_json(number);
 }
 
+// Members that nothing reads, so that they may hold anything.
+bool is_unused(std::string_view name) {
+    return name == "extras" || name == "min" || name == "max" || name == "metallicFactor" ||
+           name == "roughnessFactor" || name == "metallicRoughnessTexture";
+}
+
 void append(std::string& text, const Json& value, bool root) {
     if (value.kind == Json::Kind::number) return append_number(text, value.number);
     if (value.kind == Json::Kind::array) {
@@ -29,7 +35,7 @@ void append(std::string& text, const Json& value, bool root) {
         text += '{';
         bool first = true;
         for (const auto& [name, member] : value.members) {
-            if (name == "extras" || (root && (name == "buffers" || name == "images"))) continue;
+            if (is_unused(name) || (root && (name == "buffers" || name == "images"))) continue;
             if (!first) text += ',';
             first = false;
             text += quote_json(name) + ":";

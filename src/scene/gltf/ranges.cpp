@@ -33,6 +33,7 @@ uint64_t extent(const tinygltf::Accessor& accessor, uint64_t size) {
 void check_span(const GltfDocument& document, int view_index, uint64_t offset, uint64_t count, uint64_t size,
                 uint64_t stride, const std::string& pointer) {
     const uint64_t length = document.model.bufferViews[view_index].byteLength;
+    if (count == 0) return;
     if (offset <= length && size <= length - offset && count - 1 <= (length - offset - size) / stride) return;
     refuse(document.location(pointer), std::to_string(count) + " elements of " + std::to_string(size) + " bytes, " +
                                            std::to_string(stride) + " apart, from byte " + std::to_string(offset) +

@@ -91,11 +91,9 @@ constexpr Rule sparse[] = {integer("count", 1, largest_int, required), object("i
 constexpr Rule accessor[] = {index("bufferView", "bufferViews"),
                              integer("byteOffset", 0, largest_offset),
                              one_of("componentType", component_types, required),
-                             integer("count", 1, largest_offset, required),
+                             integer("count", 0, largest_offset, required),
                              words("type", element_types, required),
                              flag("normalized"),
-                             numbers("min", 0, -1e308, 1e308),
-                             numbers("max", 0, -1e308, 1e308),
                              object("sparse", sparse)};
 constexpr Rule buffer_view[] = {index("buffer", "buffers", required), integer("byteOffset", 0, largest_offset),
                                 integer("byteLength", 1, largest_offset, required), integer("byteStride", 4, 252)};
@@ -116,9 +114,8 @@ constexpr Rule texture_transform[] = {numbers("offset", 2), numbers("scale", 2),
 constexpr Rule texture_info_extensions[] = {object("KHR_texture_transform", texture_transform)};
 constexpr Rule texture_info[] = {index("index", "textures", required), integer("texCoord", 0, 1000),
                                  object("extensions", texture_info_extensions)};
-constexpr Rule metallic_roughness[] = {numbers("baseColorFactor", 4, 0, 1e30), object("baseColorTexture", texture_info),
-                                       number("metallicFactor", 0, 1), number("roughnessFactor", 0, 1),
-                                       object("metallicRoughnessTexture", texture_info)};
+constexpr Rule metallic_roughness[] = {numbers("baseColorFactor", 4, 0, 1e30),
+                                       object("baseColorTexture", texture_info)};
 constexpr Rule emissive_strength[] = {number("emissiveStrength", 0, 1e30)};
 constexpr Rule specular_glossiness[] = {numbers("diffuseFactor", 4, 0, 1e30), object("diffuseTexture", texture_info)};
 constexpr Rule transmission[] = {number("transmissionFactor", 0, 1e30), object("transmissionTexture", texture_info)};

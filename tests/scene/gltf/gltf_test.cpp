@@ -241,6 +241,24 @@ TEST(Gltf, RoundedLimitsAreAccepted) {
         EXPECT_TRUE(has_warning(scene, part)) << part;
 }
 
+TEST(Gltf, UnusedMembersMayHoldAnything) {
+    GltfBuilder gltf;
+    gltf.numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 5126, "VEC3", R"(,"min":[null,0,"x"],"max":{})");
+    gltf.accessors.push_back(R"({"componentType":5126,"count":0,"type":"SCALAR"})");
+    gltf.accessors.push_back(R"({"bufferView":0,"byteOffset":36,"componentType":5126,"count":0,"type":"VEC3"})");
+    gltf.members["materials"] =
+        R"([{"pbrMetallicRoughness":{"metallicFactor":1.5,"roughnessFactor":-1,"metallicRoughnessTexture":null}}])";
+    gltf.members["meshes"] =
+        R"([{"primitives":[{"attributes":{"POSITION":0},"material":0},{"attributes":{"POSITION":2}}]}])";
+    gltf.members["nodes"] = R"([{"mesh":0}])";
+    gltf.members["animations"] = R"([{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],
+        "samplers":[{"input":1,"output":2}]}])";
+    const Scene scene = loaded(gltf);
+    EXPECT_EQ(scene.meshes.size(), 1u) << "the other one has no vertices";
+    EXPECT_EQ(scene.nodes.at(0).translation.at(0), vec3(0));
+    EXPECT_TRUE(has_warning(scene, "animations without keys are ignored (1)"));
+}
+
 // CAD models have tens of thousands of parts.
 TEST(Gltf, ManyPartsMakeManyValues) {
     GltfBuilder gltf = triangle_gltf();
