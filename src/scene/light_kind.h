@@ -1,6 +1,7 @@
 // The kinds of light: those of KHR_lights_punctual and area lights, with the traits of each kind. Their functions are
 // in scene/lights.
 #pragma once
+#include <numbers>
 #include <string_view>
 
 namespace tyndall {
@@ -23,6 +24,9 @@ inline constexpr LightTraits light_kinds[] = {
     {.name = "sphere", .noun = "sphere", .unit = "nit", .area = true},
 };
 constexpr const LightTraits& traits_of(LightKind kind) { return light_kinds[static_cast<int>(kind)]; }
+
+// The least half angle of a spot that single precision resolves: 0.05 degrees, in radians.
+inline constexpr float narrowest_cone = 0.05f * std::numbers::pi_v<float> / 180;
 
 // For a Light or a LightSource.
 template<class T> constexpr bool is_distant(const T& light) { return traits_of(light.kind).distant; }

@@ -4,7 +4,6 @@
 
 namespace tyndall {
 namespace {
-const float narrowest_cone = 0.999f * glm::radians(0.05f);
 
 LightKind kind_named(std::string_view name) {
     return static_cast<LightKind>(std::ranges::find(light_kinds, name, &LightTraits::name) - light_kinds);
@@ -102,7 +101,7 @@ void read_fields(const Field& field, Scene& scene, LightSource& light) {
                "outer_cone must not be less than inner_cone, at any moment");
     if (has_cone(light) && std::ranges::max(light.outer_cone.values) <= 0)
         refuse(field.member("outer_cone"), "is 0 at all times: the light has no beam");
-    if (has_cone(light) && std::ranges::max(light.outer_cone.values) < narrowest_cone)
+    if (has_cone(light) && std::ranges::max(light.outer_cone.values) < 0.999f * narrowest_cone)
         refuse(field.member("outer_cone"), "is below 0.05 degrees, too narrow for single precision");
 }
 

@@ -199,7 +199,7 @@ float unit_factor(LightUnits units, LightKind kind) {
 
 bool known_light(std::string_view type) { return type == "point" || type == "spot" || type == "directional"; }
 
-LightSource light_source(const GltfDocument& document, int index) {
+LightSource light_source(GltfDocument& document, int index) {
     const tinygltf::Light& source = document.model.lights[index];
     LightSource light;
     if (source.type == "spot") light.kind = LightKind::spot;
@@ -212,7 +212,9 @@ LightSource light_source(const GltfDocument& document, int index) {
         refuse(document.location("/extensions/KHR_lights_punctual/lights/" + std::to_string(index) + "/spot"),
                "innerConeAngle is greater than outerConeAngle");
     light.inner_cone = std::min(static_cast<float>(source.spot.innerConeAngle), pi / 2);
-    light.outer_cone = std::min(static_cast<float>(source.spot.outerConeAngle), pi / 2);
+    if (source.spot.outerConeAngle < 0.999 * narrowest_cone)
+        document.count("spots narrower than 0.05 degrees are widened to it");
+    light.outer_cone = std::clamp(static_cast<float>(source.spot.outerConeAngle), narrowest_cone, pi / 2);
     return light;
 }
 

@@ -225,19 +225,20 @@ TEST(Gltf, RoundedLimitsAreAccepted) {
     GltfBuilder gltf = triangle_gltf();
     gltf.members["extensions"] =
         R"({"KHR_lights_punctual":{"lights":[{"type":"spot","spot":{"innerConeAngle":1.5707963705062866,
-        "outerConeAngle":1.5707963705062866}},{"type":"area"}]}})";
+        "outerConeAngle":1.5707963705062866}},{"type":"area"},{"type":"spot","spot":{"outerConeAngle":1e-6}}]}})";
     gltf.members["nodes"] = R"([{"mesh":0,"extensions":{"KHR_lights_punctual":{"light":0}}},{"camera":0},
-        {"extensions":{"KHR_lights_punctual":{"light":1}}}])";
-    gltf.members["scenes"] = R"([{"nodes":[0,1,2]}])";
+        {"extensions":{"KHR_lights_punctual":{"light":1}}},{"extensions":{"KHR_lights_punctual":{"light":2}}}])";
+    gltf.members["scenes"] = R"([{"nodes":[0,1,2,3]}])";
     gltf.members["cameras"] = R"([{"type":"perspective","perspective":{"yfov":4,"znear":0.1}}])";
     gltf.members["materials"] = R"([{"pbrMetallicRoughness":{"baseColorFactor":[1.0000001,2,0.5,1]}}])";
     gltf.members["meshes"] = R"([{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}])";
     const Scene scene = loaded(gltf);
-    ASSERT_EQ(scene.lights.size(), 1u);
+    ASSERT_EQ(scene.lights.size(), 2u);
     EXPECT_EQ(scene.lights[0].outer_cone.at(0), pi / 2);
+    EXPECT_FLOAT_EQ(scene.lights[1].outer_cone.at(0), glm::radians(0.05f));
     EXPECT_EQ(scene.materials.at(0).base_color, vec3(1, 1, 0.5f));
     EXPECT_LT(scene.cameras.at(0).vertical_fov.at(0), pi);
-    for (const char* part : {"170 degrees", "above 1 are clamped to 1", "unknown types"})
+    for (const char* part : {"170 degrees", "above 1 are clamped to 1", "unknown types", "widened to it (1)"})
         EXPECT_TRUE(has_warning(scene, part)) << part;
 }
 
