@@ -7,6 +7,7 @@
 #include "trace/fog/motion.h"
 #include "trace/moment.h"
 #include "trace/shadows/cached_shadows.h"
+#include "trace/shutter_points.h"
 
 #include <algorithm>
 #include <bit>
@@ -23,64 +24,11 @@ constexpr int fewest_moments = 4; // if anything changes
 constexpr double max_bytes = 8.0 * (1 << 30), bytes_per_triangle = 200, bytes_of_grid = 8 << 20;
 constexpr double bytes_per_pixel = 16, bytes_per_beam_pixel = 17;
 
-using Points = std::vector<vec3>;
-
-void add_corners(const mat4& matrix, const Box& box, Points& points) {
-    if (box.empty() || !is_finite(box.low) || !is_finite(box.high)) return;
-    for (int i = 0; i < 8; ++i) points.push_back(vec3(matrix * glm::vec4(box.corner(i), 1)));
-}
-
-// Up to 256 vertices spread over a posed mesh.
-void add_vertices(const mat4& matrix, const Mesh& mesh, const Pose& pose, Points& points) {
-    constexpr size_t enough = 256;
-    const size_t count = mesh.positions.size();
-    for (size_t i = 0; i < std::min(count, enough); ++i)
-        points.push_back(vec3(matrix * vec4(posed_position(mesh, pose, i * count / std::min(count, enough)), 1)));
-}
-
-// The light's position and points along its beam, which stand for what it lights and for its shadows.
-void add_light(const Scene& scene, const LightSource& light, double seconds, float extent, Points& points) {
-    const mat4 matrix = light.node >= 0 ? node_matrix(scene, light.node, seconds) : mat4(1);
-    const vec3 position = light.node >= 0 ? vec3(matrix[3]) : light.position.at(seconds);
-    const vec3 along = light.node >= 0 ? -vec3(matrix[2]) : light.direction.at(seconds);
-    const float length = glm::length(along), reach = std::min(light.range, extent);
-    const bool aimed = light.kind != LightKind::point && length > 0;
-    for (const float share : {0.0f, 0.25f, 0.5f, 1.0f})
-        points.push_back(aimed ? position + share * reach / length * along : position);
-}
-
-// The points whose motion is measured, in the same order at every moment.
-Points points_at(const Scene& scene, const std::vector<Box>& meshes, double seconds, float extent) {
-    Points points;
-    for (const LightSource& light : scene.lights) add_light(scene, light, seconds, extent, points);
-    for (const Instance& instance : scene.instances)
-        if (instance.mesh >= 0) {
-            const size_t mesh = static_cast<size_t>(instance.mesh);
-            const Pose pose = pose_of(scene, instance, seconds);
-            const mat4 matrix = instance_matrix(scene, instance, seconds);
-            if (pose.empty())
-                add_corners(matrix, meshes[mesh], points);
-            else
-                add_vertices(matrix, scene.meshes[mesh], pose, points);
-        }
-    for (const MediumSource& medium : scene.media) {
-        const mat4 matrix = medium_matrix(medium, seconds);
-        points.push_back(vec3(matrix[3])); // for media from files, whose bounds are not read yet
-        add_corners(matrix, medium.recipe ? medium.recipe->bounds : medium.bounds, points);
-    }
-    return points;
-}
-
-float extent_of(const Scene& scene, double seconds) {
-    const Box box = scene_bounds(scene, seconds);
-    const float size = box.empty() ? 0 : glm::length(box.size());
-    return size > 0 && std::isfinite(size) ? size : 10.0f;
-}
-
-bool near_picture(vec2 at, ivec2 size) {
-    const vec2 margin = 0.25f * vec2(size);
-    return at.x > -margin.x && at.y > -margin.y && at.x < static_cast<float>(size.x) + margin.x &&
-           at.y < static_cast<float>(size.y) + margin.y;
+// Whether a straight way crosses the picture or a quarter of its size around it.
+bool crosses_picture(vec2 from, vec2 to, ivec2 size) {
+    const vec2 whole(size);
+    const Box box{vec3(-0.25f * whole, -1), vec3(1.25f * whole, 1)};
+    return !clip(box, vec3(from, 0), vec3(to - from, 0), {0, 1}).empty();
 }
 
 bool changes(const Scene& scene, const CameraSource& camera) {
@@ -89,8 +37,8 @@ bool changes(const Scene& scene, const CameraSource& camera) {
            (camera.focus && !camera.focus->constant()) || !camera.blade_rotation.constant() ||
            is_moving(scene, camera.node);
 }
+}
 
-// In anything but brightness.
 bool changes(const Scene& scene, const LightSource& light) {
     const auto all = [](const auto&... values) { return (values.constant() && ...); };
     if (light.gobo && !all(light.gobo->rotation, light.gobo->scale)) return true;
@@ -99,6 +47,7 @@ bool changes(const Scene& scene, const LightSource& light) {
                 light.radius, light.angle, light.width, light.height);
 }
 
+namespace {
 bool changes(const PhaseSource& phase) {
     const auto all = [](const auto&... values) { return (values.constant() && ...); };
     return !all(phase.g, phase.alpha, phase.droplet_diameter, phase.weight) ||
@@ -122,19 +71,18 @@ double seconds_of(const Scene& scene, int frame, const Shutter& shutter, float s
 }
 
 float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter) {
-    std::vector<Box> meshes;
-    for (const Mesh& mesh : scene.meshes) meshes.push_back(posed_bounds(mesh, {}));
-    const float extent = extent_of(scene, seconds_of(scene, frame, shutter, 0.5f));
+    const double middle = seconds_of(scene, frame, shutter, 0.5f);
+    const ShutterPoints points = shutter_points(scene, camera_at(scene, camera, middle), size, frame, middle);
     std::vector<float> traveled;
     std::vector<std::optional<vec2>> before;
     for (int look = 0; look < looks; ++look) {
         const double seconds = seconds_of(scene, frame, shutter, static_cast<float>(look) / (looks - 1));
         const Camera now = camera_at(scene, camera, seconds);
-        const Points points = points_at(scene, meshes, seconds, extent);
-        traveled.resize(points.size(), 0), before.resize(points.size());
-        for (size_t i = 0; i < points.size(); ++i) {
-            const std::optional<vec2> at = pixel_of(now, size, points[i]);
-            if (at && before[i] && (near_picture(*at, size) || near_picture(*before[i], size)))
+        const std::vector<vec3> places = points_at(points, seconds);
+        traveled.resize(places.size(), 0), before.resize(places.size());
+        for (size_t i = 0; i < places.size(); ++i) {
+            const std::optional<vec2> at = is_finite(places[i]) ? pixel_of(now, size, places[i]) : std::nullopt;
+            if (at && before[i] && crosses_picture(*before[i], *at, size))
                 traveled[i] += glm::distance(*at, *before[i]);
             before[i] = at;
         }
@@ -142,7 +90,7 @@ float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const 
     // A camera that turns moves even the background, which has no position.
     const Camera first = camera_at(scene, camera, seconds_of(scene, frame, shutter, 0));
     const Camera last = camera_at(scene, camera, seconds_of(scene, frame, shutter, 1));
-    const std::optional<vec2> turned = pixel_of(last, size, last.position + extent * first.forward);
+    const std::optional<vec2> turned = pixel_of(last, size, last.position + points.extent * first.forward);
     float most = turned ? glm::distance(*turned, 0.5f * vec2(size)) : glm::length(vec2(size));
     for (const float way : traveled)
         if (std::isfinite(way)) most = std::max(most, way);
@@ -193,20 +141,24 @@ double bytes_of_moment(const Scene& scene, double seconds, double pixels, bool e
 }
 }
 
+int affordable_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter,
+                       bool keeps_images) {
+    const bool everything = changes(scene, scene.cameras[static_cast<size_t>(camera)]) ||
+                            std::ranges::any_of(scene.media, [](const auto& medium) { return changes(medium); });
+    const double bytes = bytes_of_moment(scene, seconds_of(scene, frame, shutter, 0.5f),
+                                         static_cast<double>(size.x) * size.y, everything, keeps_images);
+    const double most = std::clamp(max_bytes / std::max(bytes, 1.0), double(fewest_moments), double(max_auto_moments));
+    return static_cast<int>(std::bit_floor(static_cast<unsigned>(most)));
+}
+
 int auto_moments(const Scene& scene, int camera, ivec2 size, int frame, const Shutter& shutter, bool keeps_images,
                  int finer) {
     if (!moves_while_open(scene, camera, shutter)) return 1;
     float wanted = image_motion(scene, camera, size, frame, shutter) / spacing;
     if (std::ranges::any_of(scene.media, [](const MediumSource& medium) { return medium.velocity.has_value(); }))
         wanted = std::max(wanted, float(moments_of_velocities));
-    const float most = static_cast<float>(max_auto_moments);
-    const int count = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::min(wanted, most) + 0.999f)));
-    const bool everything = changes(scene, scene.cameras[static_cast<size_t>(camera)]) ||
-                            std::ranges::any_of(scene.media, [](const auto& medium) { return changes(medium); });
-    const double bytes = bytes_of_moment(scene, seconds_of(scene, frame, shutter, 0.5f),
-                                         static_cast<double>(size.x) * size.y, everything, keeps_images);
-    const double affordable = std::clamp(max_bytes / std::max(bytes, 1.0), double(fewest_moments), double(most));
-    return std::min(finer * std::max(count, fewest_moments),
-                    static_cast<int>(std::bit_floor(static_cast<unsigned>(affordable))));
+    const auto count = std::bit_ceil(static_cast<unsigned>(std::min(wanted, float(max_auto_moments)) + 0.999f));
+    return std::min(finer * std::max(static_cast<int>(count), fewest_moments),
+                    affordable_moments(scene, camera, size, frame, shutter, keeps_images));
 }
 }

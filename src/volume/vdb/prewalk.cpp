@@ -6,6 +6,7 @@
 #include "volume/vdb/transform.h"
 
 #include <cstring>
+#include <sstream>
 
 namespace tyndall {
 namespace {
@@ -107,12 +108,23 @@ struct Offsets {
     int64_t grid = 0, voxels = 0, end = 0;
 };
 
+// The box of active voxels that OpenVDB notes in a grid's metadata, unless it was told not to.
+void read_stated_box(VdbGridEntry& grid) {
+    const auto corner = [&](std::string_view name, ivec3& at) {
+        const std::string* text = find(grid.metadata, name);
+        return text && std::istringstream(*text) >> at.x >> at.y >> at.z;
+    };
+    ivec3 low, high;
+    if (corner("file_bbox_min", low) && corner("file_bbox_max", high)) grid.stated_low = low, grid.stated_high = high;
+}
+
 // Reads compression, metadata and transform, from the end of the descriptor up to the tree.
 void read_description(ByteCursor& file, VdbGridEntry& grid, bool whole_needed) {
     grid.compression = file.value<uint32_t>("the compression");
     if (grid.compression > 7) file.complain("its compression is unknown: " + std::to_string(grid.compression));
     grid.metadata = read_metadata(file);
     if (const std::string* text = find(grid.metadata, "class")) grid.grid_class = *text;
+    read_stated_box(grid);
     const std::string* half = find(grid.metadata, "is_saved_as_half_float");
     if (grid.half != (half && *half == "true"))
         file.complain("its type and its metadata disagree on whether it is stored as half");

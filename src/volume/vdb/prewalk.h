@@ -22,6 +22,7 @@ struct VdbGridEntry {
     uint32_t compression = 0;           // bits of VdbCompression
     VdbMetadata metadata;
     dmat4 index_to_world{1};
+    ivec3 stated_low{0}, stated_high{-1};  // box of the active voxels, as the file states it; empty if it does not
     std::string transform_problem;         // why index_to_world is unusable; empty if valid
     uint64_t tree_begin = 0, tree_end = 0; // bytes of topology and voxels (of the parent, for an instance)
     uint32_t nano_type = 0;                // NanoVDB grid type; 0 = OpenVDB grid

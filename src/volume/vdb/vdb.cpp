@@ -171,6 +171,17 @@ VelocityVolume read_velocity_vdb(const std::filesystem::path& path, std::span<co
     return within_memory(path, [&] { return read_velocity(path, grids, map, report); });
 }
 
+Box stated_bounds(const std::filesystem::path& path, const std::string& wanted, const ValueMap& map) {
+    ByteCursor file(path);
+    const VdbDirectory directory = read_grids(file);
+    const VdbGridEntry& grid = choose_grid(directory, wanted, map.width, file, "density");
+    const Box voxels{vec3(grid.stated_low) - 0.5f, vec3(grid.stated_high) + 0.5f};
+    Box bounds;
+    for (int i = 0; i < 8 && glm::all(glm::lessThanEqual(grid.stated_low, grid.stated_high)); ++i)
+        bounds.grow(vec3(grid.index_to_world * glm::dvec4(voxels.corner(i), 1)));
+    return bounds;
+}
+
 VdbMetadata vdb_metadata(const std::filesystem::path& path) {
     ByteCursor file(path);
     return read_directory(file).metadata;

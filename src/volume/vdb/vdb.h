@@ -131,6 +131,10 @@ struct VelocityVolume {
 VelocityVolume read_velocity_vdb(const std::filesystem::path& file, std::span<const std::string> grids,
                                  const ValueMap& map, VdbReadReport* report);
 
+// Bounds of the fog that read_vdb() would read with these arguments, in the file's own space, without reading voxels;
+// empty if the file does not state them. Throws Error like read_vdb().
+Box stated_bounds(const std::filesystem::path& file, const std::string& grid, const ValueMap& map);
+
 // File metadata (such as optics and frame written by a bake), without reading voxels.
 std::vector<std::pair<std::string, std::string>> vdb_metadata(const std::filesystem::path& file);
 

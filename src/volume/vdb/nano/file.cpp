@@ -138,6 +138,9 @@ VdbGridEntry read_announcement(ByteCursor& file, nanovdb::io::MetaData& announce
     if (announced.gridType >= nanovdb::GridType::Fp4 && announced.gridType <= nanovdb::GridType::FpN)
         grid.metadata.emplace_back("stored_as", nanovdb::toStr(announced.gridType));
     grid.compression = compression;
+    for (int axis = 0; axis < 3; ++axis)
+        grid.stated_low[axis] = announced.indexBBox.min()[axis],
+        grid.stated_high[axis] = announced.indexBBox.max()[axis];
     grid.nano_type = static_cast<uint32_t>(announced.gridType), grid.nano_bytes = announced.gridSize;
     return grid;
 }
