@@ -228,13 +228,21 @@ TEST(MeshLight, MarchScattersItFurther) {
     const Limitations said = find_mode("march").limitations(View{}, stage.snapshot, all);
     EXPECT_TRUE(has_limitation(said, limitation::cached_fluence));
     EXPECT_TRUE(has_limitation(said, limitation::fog_scatters_alone));
-    double march = 0, paths = 0;
-    for (const Ray& ray : {Ray{{0, -1, 4}, {0, 0, -1}, 8}, Ray{{-1.5f, -0.5f, 4}, {0, 0, -1}, 8},
-                           Ray{{4, 0.5f, -1}, {-1, 0, 0}, 8}, Ray{{4, 2, 1}, {-1, 0, 0}, 8}}) {
-        march += double{marched(stage.snapshot, all, ray).radiance.y - marched(stage.snapshot, once, ray).radiance.y};
-        paths += double{traced(stage.snapshot, ray, 1 << 13).value.y - traced(stage.snapshot, ray, 1 << 13, 1).value.y};
-    }
-    EXPECT_NEAR(march / paths, 1, 0.05);
+    all.fluence.resolution = 16, all.fluence.paths = 200'000;
+    const std::vector<Ray> rays{{{0, -1, 4}, {0, 0, -1}, 8},
+                                {{-1.5f, -0.5f, 4}, {0, 0, -1}, 8},
+                                {{4, 0.5f, -1}, {-1, 0, 0}, 8},
+                                {{4, 2, 1}, {-1, 0, 0}, 8}};
+    const double march = mean_of(marched(stage.snapshot, all, rays)) - mean_of(marched(stage.snapshot, once, rays));
+    double paths = 0, variance = 0;
+    for (const Ray& ray : rays)
+        for (const int orders : {1, all_orders}) {
+            const RayEstimate found = traced(stage.snapshot, ray, 1 << 11, orders);
+            paths += (orders == 1 ? -1 : 1) * luminance(vec3(found.value)) / 4;
+            variance += std::pow(luminance(vec3(found.error)) / 4, 2);
+        }
+    EXPECT_NEAR(march, paths, 0.05 * paths + sigmas * std::sqrt(variance));
+    EXPECT_LT(sigmas * std::sqrt(variance), 0.1 * paths);
 }
 
 TEST(MeshLight, ModesSayWhatBecomesOfIt) {
