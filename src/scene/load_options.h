@@ -13,7 +13,7 @@ struct LoadOptions {
     // Units of the glTF's lights: candela and lux; Blender's "unitless" (683 lm/W missing); Blender's "raw" watts
     // (points and spots also spread over the sphere, 683 / 4 pi).
     LightUnits light_units = LightUnits::spec;
-    std::optional<std::vector<std::string>> animations; // names of those of the glTF to play; none: all
+    std::optional<std::vector<std::string>> animations{}; // names of those of the glTF to play; none: all
     size_t texture_bytes = size_t{1} << 30; // the most that all textures of a glTF may take; smaller in tests
 };
 }

@@ -54,9 +54,10 @@ TEST(MeshLamps, SquareHasItsCandelaInEveryDirection) {
 TEST(MeshLamps, AlphaTakesItsShareOfTheCandela) {
     for (const bool mask : {false, true}) {
         TestScene stage = stage_with({square()});
+        Image<vec4> halves(ivec2(2, 1), vec4(1));
+        if (mask) halves.at(0, 0).w = 0;
         Texture texture;
-        texture.nearest = true, texture.texels = Image<vec4>(ivec2(2, 1), vec4(1));
-        if (mask) texture.texels.at(0, 0).w = 0;
+        texture.nearest = true, texture.texels = shared_texels(std::move(halves));
         Material& lamp = stage.scene->materials[1];
         lamp.alpha_mode = mask ? AlphaMode::mask : AlphaMode::blend, lamp.alpha = mask ? 1 : 0.5f;
         lamp.base_texture = 0, stage.scene->textures = {texture};

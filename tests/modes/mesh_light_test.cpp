@@ -38,9 +38,10 @@ TestScene glowing_stage(std::vector<Medium> media, std::vector<Mesh> others = {}
     TestScene stage = make_scene(std::move(media), {}, others);
     Material glowing = lambert(vec3(0), radiance);
     glowing.name = "lamp", glowing.alpha_mode = emitter.mode, glowing.alpha = emitter.alpha;
+    Image<vec4> columns(ivec2(4, 1), vec4(1));
+    for (int x = 0; x < 4; ++x) columns.at(x, 0).w = static_cast<float>(x) < 4 * emitter.start ? 0.0f : 1.0f;
     Texture texture;
-    texture.nearest = true, texture.texels = Image<vec4>(ivec2(4, 1), vec4(1));
-    for (int x = 0; x < 4; ++x) texture.texels.at(x, 0).w = static_cast<float>(x) < 4 * emitter.start ? 0.0f : 1.0f;
+    texture.nearest = true, texture.texels = shared_texels(std::move(columns));
     if (emitter.start > 0) glowing.base_texture = 0;
     stage.scene->materials = {lambert(vec3(1)), glowing}, stage.scene->textures = {texture};
     for (Mesh& mesh : stage.scene->meshes) mesh.material = 0;
@@ -124,9 +125,10 @@ TEST(MeshLight, FogScattersWhatAlphaLeavesAsByQuadrature) {
 // Across the square, from clear to opaque and back within its texture and from side to side.
 TestScene faded_stage(std::vector<Medium> media, AlphaMode mode) {
     TestScene stage = glowing_stage(std::move(media), {roof(0.3f, 0.8f), floor_of(0, 1)});
+    Image<vec4> stripes(ivec2(4, 1), vec4(1));
+    for (int x = 0; x < 4; ++x) stripes.at(x, 0).w = x % 2 ? 1.0f : 0.2f;
     Texture& texture = stage.scene->textures[0];
-    texture.nearest = false;
-    for (int x = 0; x < 4; ++x) texture.texels.at(x, 0).w = x % 2 ? 1.0f : 0.2f;
+    texture.nearest = false, texture.texels = shared_texels(std::move(stripes));
     stage.scene->materials[1].base_texture = 0, stage.scene->materials[1].alpha_mode = mode;
     stage.scene->materials[1].base_color = vec3(0.5f);
     stage.scene->meshes.back().alphas = {0.9f, 1, 0.6f, 0.3f};

@@ -67,15 +67,16 @@ StressScene with_alpha(AlphaMode mode, float alpha, Texture texture) {
 
 StressScene clear(double alpha) {
     Texture texture;
-    texture.texels = Image<vec4>(ivec2(1), vec4(1));
+    texture.texels = shared_texels(Image<vec4>(ivec2(1), vec4(1)));
     return with_alpha(AlphaMode::blend, static_cast<float>(alpha), std::move(texture));
 }
 
 // Stripes of which a share is left.
 StressScene cut_out(double share) {
+    Image<vec4> stripes(ivec2(80, 1), vec4(1));
+    for (int x = 0; x < 80; ++x) stripes.at(x, 0).w = x % 20 < static_cast<int>(20 * share) ? 1.0f : 0.0f;
     Texture texture;
-    texture.nearest = true, texture.texels = Image<vec4>(ivec2(80, 1), vec4(1));
-    for (int x = 0; x < 80; ++x) texture.texels.at(x, 0).w = x % 20 < static_cast<int>(20 * share) ? 1.0f : 0.0f;
+    texture.nearest = true, texture.texels = shared_texels(std::move(stripes));
     return with_alpha(AlphaMode::mask, 1, std::move(texture));
 }
 

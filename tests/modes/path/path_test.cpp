@@ -83,9 +83,10 @@ TEST(Path, FurnaceWithSurfacesAndOverlappingFogIsWhite) {
 
 // White, between clear and opaque.
 Texture faded_texture() {
+    Image<vec4> faded(ivec2(4, 4), vec4(1));
+    for (int i = 0; i < 16; ++i) faded.at(i % 4, i / 4).w = to_unit(hash(static_cast<uint32_t>(i), 8u));
     Texture texture;
-    texture.texels = Image<vec4>(ivec2(4, 4), vec4(1));
-    for (int i = 0; i < 16; ++i) texture.texels.at(i % 4, i / 4).w = to_unit(hash(static_cast<uint32_t>(i), 8u));
+    texture.texels = shared_texels(std::move(faded));
     return texture;
 }
 
