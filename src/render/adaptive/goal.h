@@ -15,6 +15,7 @@ struct Goal {
     std::optional<OrdersError> orders{}; // already measured for this image; none = not yet
     // Of the mode that renders the image again if this one misses the error.
     double other_work = infinity, other_seconds = infinity;
+    int moment_limit = 0; // that the frame may have if it is loaded again; 0 = no more than it has
 };
 
 // orders_error() for a goal, within a share of its time limit.

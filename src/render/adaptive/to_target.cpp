@@ -6,9 +6,11 @@
 #include "render/adaptive/errors/shutter_error.h"
 #include "render/adaptive/target_rounds.h"
 #include "render/frame/layers.h"
+#include "trace/shutter_motion.h"
 #include "trace/transmittance/light_depth.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <limits>
 
@@ -54,8 +56,19 @@ struct Rendering {
     std::shared_ptr<const Prepared> prepared; // null = each round prepares itself
 };
 
-// Error of motion blur from the shutter's moments, if any; reduces goal.error to what that leaves.
-std::optional<Noise> measure_moments(TargetRounds& rounds, Rendering& rendering) {
+// A larger number of moments if the error of so many takes up most of the goal, else 0. It falls at least as 1 / n once
+// copies of what moves overlap. A time limit is left to the samples.
+int moments_for(const Noise& error, int count, const Goal& goal) {
+    constexpr double largest = 0.7, wanted = 0.5; // of the goal's error
+    if (goal.error == 0 || goal.seconds > 0 || error.bound <= largest * goal.error) return 0;
+    const double times = std::min(std::ceil(error.bound / (wanted * goal.error)), double{max_moments});
+    const int more = std::min(goal.moment_limit, count * static_cast<int>(std::bit_ceil(static_cast<unsigned>(times))));
+    return more > count ? more : 0;
+}
+
+// Error of motion blur from the shutter's moments, if any; reduces goal.error to what that leaves, and sets the number
+// of moments `wanted` instead, 0 = these.
+std::optional<Noise> measure_moments(TargetRounds& rounds, Rendering& rendering, int& wanted) {
     const auto& [mode, snapshot, options, requested, settings, prepared] = rendering;
     if (!has_moments(rounds.view, snapshot)) return {};
     if (!prepared)
@@ -67,6 +80,7 @@ std::optional<Noise> measure_moments(TargetRounds& rounds, Rendering& rendering)
                                              scout ? chances_in(scout->layers) : uniform_chances(rounds.view, snapshot),
                                              goal.error, goal.seconds > 0, options);
     const Noise moments{std::sqrt(error.value), std::sqrt(error.bound)};
+    wanted = moments_for(moments, static_cast<int>(rounds.view.shutter->cameras.size()), goal);
     if (goal.error > 0) goal.error = remaining_error(moments, goal.error).value_or(goal.error); // none = goal missed
     return moments;
 }
@@ -236,7 +250,11 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
         stats.prepare_seconds = goal.clock() - rounds.start;
         if (rounds.choice->scout) image.rounds = 1; // no round may reuse the scout's random numbers
     }
-    const std::optional<Noise> moments = measure_moments(rounds, rendering);
+    const std::optional<Noise> moments = measure_moments(rounds, rendering, stats.wanted_moments);
+    if (stats.wanted_moments > 0) {
+        stats.goal_seconds = goal.clock() - rounds.start;
+        return {};
+    }
     for (uint32_t check = 1; check <= max_checks; ++check) {
         const bool is_done = render_until_check(rounds, rendering, image);
         const bool has_time = goal.seconds == 0 || rounds.check_seconds > 0;

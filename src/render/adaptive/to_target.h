@@ -25,6 +25,9 @@ void check_target(const Mode& mode, std::string_view option = "--target-error");
 // once samples are allotted, 4, 8 and 2 respectively, or more in tiles with many. Each round has its own random
 // numbers, except that if many pixels cause the noise of an allotment, its two batches continue from round to round. An
 // image of one sample per pixel is judged by the pixels measured beforehand.
+//
+// If motion blur from the snapshot's moments leaves too little of goal.error and goal.moment_limit allows more, nothing
+// is rendered: stats.wanted_moments says how many to try.
 Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                         Goal goal, const FrameOptions& options, FrameStats& stats);
 }

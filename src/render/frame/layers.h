@@ -85,6 +85,7 @@ struct FrameStats {
     std::optional<Integrator> integrator; // if it was measured
     std::optional<OrdersError> orders;    // if multiple scattering from a grid was measured
     std::optional<Noise> moments_error;   // of motion blur from few moments, if it was measured
+    int wanted_moments = 0;               // that the goal needs, if nothing was rendered as the frame has too few
     double goal_seconds = 0;              // all the time that counts towards a goal
     double forecast_seconds = 0; // of it, predicted in its first third; 0 = not predicted, infinite = out of reach
 

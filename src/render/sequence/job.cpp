@@ -109,16 +109,31 @@ int frame_before(const Scene& scene, int frame, int back) {
     return std::max(frame - back, std::min(scene.first_frame, frame));
 }
 
+namespace {
+ivec2 size_of(const Scene& scene, const RenderRequest& request) {
+    return request.resolution.x > 0 ? request.resolution : scene.resolution;
+}
+
+// Whether the mode stores data per pixel and light.
+bool keeps_images(const RenderRequest& request) { return request.mode_open || find_mode(request.mode).uses_history; }
+}
+
 FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int frame) {
     const Shutter shutter = shutter_of(scene, request);
     const int camera = find_camera(scene, request.camera);
     if (!moves_while_open(scene, camera, shutter)) return frame_moments(scene, frame, shutter, 1);
-    const ivec2 size = request.resolution.x > 0 ? request.resolution : scene.resolution;
-    const bool keeps_images = request.mode_open || find_mode(request.mode).uses_history;
     const int finer = request.target_error > 0 ? 2 : 1; // the error left by half of them is part of the target error
     const int count = request.time_samples > 0 ? request.time_samples
-                                               : auto_moments(scene, camera, size, frame, shutter, keeps_images, finer);
+                                               : auto_moments(scene, camera, size_of(scene, request), frame, shutter,
+                                                              keeps_images(request), finer);
     return frame_moments(scene, frame, shutter, count);
+}
+
+int moment_limit(const Scene& scene, const RenderRequest& request, int frame) {
+    const Shutter shutter = shutter_of(scene, request);
+    if (request.time_samples > 0 || !shutter) return 0;
+    return affordable_moments(scene, find_camera(scene, request.camera), size_of(scene, request), frame, shutter,
+                              keeps_images(request));
 }
 
 namespace {
@@ -137,7 +152,7 @@ View view_of(const Scene& scene, const RenderRequest& request, const Settings& s
     const FrameMoments moments = moments_of(scene, request, frame);
     const int camera = find_camera(scene, request.camera);
     view.camera = camera_at(scene, camera, moments.middle.seconds);
-    view.size = request.resolution.x > 0 ? request.resolution : scene.resolution;
+    view.size = size_of(scene, request);
     view.shutter = open_shutter(scene, request, camera, view.size, frame, moments);
     view.crop_low = request.crop_low, view.crop_high = request.crop_high;
     view.pixel_samples = settings.pixel.samples;

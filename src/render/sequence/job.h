@@ -112,6 +112,9 @@ int frame_before(const Scene& scene, int frame, int back);
 // The shutter moments of a frame. Throws Error for a camera that is not in the scene.
 FrameMoments moments_of(const Scene& scene, const RenderRequest& request, int frame);
 
+// The largest number of moments that a frame may be given for the sake of its target error; 0 = it keeps those it has.
+int moment_limit(const Scene& scene, const RenderRequest& request, int frame);
+
 // A frame as the camera sees it. Throws Error for a camera that is not in the scene.
 View view_of(const Scene& scene, const RenderRequest& request, const Settings& settings, int frame);
 

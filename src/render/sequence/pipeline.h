@@ -17,6 +17,7 @@ struct FrameJob {
     std::string hash;
     View view;
     Snapshot snapshot;
+    std::optional<Snapshot> finer{}; // with more moments, for the target error; it is rendered instead
     Layers layers;
     FramePart part{};               // instead of layers, if a part is requested
     std::optional<RenderPlan> by{}; // what it was rendered with, if not the sequence's plan

@@ -62,6 +62,37 @@ void say_forecast(const Pipeline& pipeline, const FrameJob& work, double seconds
     say(pipeline, work, "will take about " + seconds_text(seconds));
 }
 
+// Loads the frame again with more moments. The first snapshot stays, as the next frame is loaded beside it.
+void add_moments(const Pipeline& pipeline, FrameJob& work, int count) {
+    RenderRequest request = pipeline.request;
+    request.time_samples = count;
+    const int frame = work.report.frame;
+    say(pipeline, work, "needs " + std::to_string(count) + " moments of motion blur for the target error");
+    work.finer = make_snapshot(pipeline.scene, moments_of(pipeline.scene, request, frame), &work.snapshot,
+                               request.missing, request.files);
+    work.view = view_of(pipeline.scene, request, pipeline.plan.settings, frame);
+}
+
+// Renders to the goal, with more moments than the frame was loaded with if these are too few for the target error.
+void render_to_goal(const Pipeline& pipeline, FrameJob& work, const Mode& mode, const Settings& settings, Goal goal,
+                    const FrameOptions& options) {
+    FrameStats& stats = work.report.stats;
+    FrameStats lost;
+    goal.moment_limit = moment_limit(pipeline.scene, pipeline.request, work.report.frame);
+    while (true) {
+        if (work.finer) goal.choice = nullptr; // prepared for the first snapshot
+        const Snapshot& snapshot = work.finer ? *work.finer : work.snapshot;
+        work.layers = render_to_target(mode, work.view, snapshot, settings, goal, options, stats);
+        if (stats.wanted_moments == 0) break;
+        lost.add(stats), lost.goal_seconds += stats.goal_seconds;
+        const double start = steady_seconds();
+        add_moments(pipeline, work, stats.wanted_moments);
+        lost.goal_seconds += steady_seconds() - start;
+    }
+    stats.add(lost), stats.goal_seconds += lost.goal_seconds;
+    if (stats.forecast_seconds > 0) stats.forecast_seconds += lost.goal_seconds;
+}
+
 // Whether a technique chosen for the first frame missed the target.
 bool missed_by_plan(const RenderPlan& plan, const RenderRequest& request, const FrameStats& stats) {
     return plan.wanted && plan.mode != &main_mode() && request.time_budget == 0 && stats.integrator &&
@@ -81,7 +112,7 @@ void render_by_main_mode(Pipeline& pipeline, FrameJob& work, FrameOptions option
     options.history = nullptr;
     FrameStats& stats = work.report.stats;
     const FrameStats missed = stats;
-    work.layers = render_to_target(main_mode(), work.view, work.snapshot, work.by->settings, goal, options, stats);
+    render_to_goal(pipeline, work, main_mode(), work.by->settings, goal, options);
     stats.add_lost(missed);
 }
 
@@ -132,7 +163,7 @@ void render(Pipeline& pipeline, FrameJob& work) {
         if (is_part(request.grouping))
             render_own_part(pipeline, options, work);
         else if (has_goal(request))
-            work.layers = render_to_target(*plan.mode, work.view, work.snapshot, plan.settings, goal, options, stats);
+            render_to_goal(pipeline, work, *plan.mode, plan.settings, goal, options);
         else
             work.layers = render_frame(*plan.mode, work.view, work.snapshot, plan.settings, options, stats);
         if (!is_part(request.grouping))

@@ -127,7 +127,7 @@ void run(Pipeline& pipeline) {
         if (render_error) std::rethrow_exception(render_error);
 
         // Releases the fog and triangles of the finished frame, unless the next one shares them.
-        current->snapshot = {};
+        current->snapshot = {}, current->finer.reset();
         rendered = std::move(current);
         current = std::move(next);
         if (current) current->report.seconds = steady_seconds() - end;

@@ -5,7 +5,7 @@ import struct
 import unittest
 
 from cli.exr import read_channels
-from cli.program import TRIANGLE, ProgramTest, gltf, lit_scene
+from cli.program import TRIANGLE, ProgramTest, gltf, lit_scene, run
 
 CAMERA = {"position": [0, 0.6, 3], "target": [0, 0.4, 0]}
 HALF_FRAME = {"open": -0.25, "close": 0.25}
@@ -129,6 +129,31 @@ class ShutterTest(ProgramTest):
         self.assertGreaterEqual(frame["time_samples"], 4)
         self.succeed("render", scene, "-o", self.path("truth.exr"), "--frames", "3", "--samples", 64, "--seed", 2, "-q")
         self.succeed("compare", self.path("a.exr"), self.path("truth.exr"), "--fail-above", "rmse_rel=0.1")
+
+    def test_moments_are_added_for_an_error(self):
+        """Wind that blows fog by many of its features: how far these go in the image is not known beforehand."""
+        self.write("gale.json", {"bounds": {"low": [-1, 0, -1], "high": [1, 1, 1]}, "voxel_size": 0.1, "wind": [80, 0, 0],
+                                 "noise": {"octaves": 1, "scale": 0.4}, "density": {"threshold": 0.5, "gain": 8}})
+        scene = self.scene(shutter=HALF_FRAME, lights=LAMPS[1:], resolution=[32, 18],
+                           media=[{"type": "noise", "recipe": "gale.json", "extinction": 8}])
+        asked = ["render", scene, "-o", self.path("a.exr"), "--frames", "3", "--target-error", 0.1, "--stats-json",
+                 self.path("stats.json")]
+
+        def frame():
+            return json.loads(self.path("stats.json").read_text())["frames"][0]
+
+        self.assertEqual(run(*asked, "--time-samples", 8).returncode, 1, "as many as asked for")
+        self.assertGreater(frame()["moments_error"], 0.1)
+        self.assertEqual(frame()["time_samples"], 8)
+        said = self.succeed(*asked, "-v")
+        used = frame()["time_samples"]
+        self.assertGreater(used, 8)
+        self.assertLessEqual(frame()["error_bound"], 0.1)
+        self.assertEqual(self.attributes("a.exr")["tyndall:timeSamples"], str(used))
+        self.assertIn(f"needs {used} moments", said.stdout + said.stderr)
+        self.succeed("render", scene, "-o", self.path("truth.exr"), "--frames", "3", "--samples", 256, "--time-samples", 512,
+                     "--seed", 2, "-q")
+        self.succeed("compare", self.path("a.exr"), self.path("truth.exr"), "--fail-above", "rmse_rel=0.11")
 
     def test_bad_shutters_are_refused_in_one_line(self):
         scene = self.scene()

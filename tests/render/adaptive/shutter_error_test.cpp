@@ -79,6 +79,27 @@ TEST(MomentsError, OfAnEdgeIsAMomentOrNone) {
     EXPECT_NEAR(error_of_moments([](double time) { return time > 0.22 ? 1.0 : 0.0; }, 32), 1.0 / 25, 1e-5);
 }
 
+// Most of the target: more moments are asked for, in proportion, and nothing is rendered.
+TEST(MomentsError, AsksForMoreMoments) {
+    Blurred blurred([](double time) { return time > 0.22 ? 1.0 : 0.0; }, 32); // is off by 0.04
+    blurred.mode.surfaces = Surfaces::own, blurred.mode.accuracy = Accuracy::multiple_scattering;
+    const auto wanted = [&](double target, int most, double seconds = 0) {
+        Goal goal{target, seconds};
+        goal.moment_limit = most;
+        FrameStats stats;
+        const Layers layers =
+            render_to_target(blurred.mode, blurred.view, blurred.snapshot, Settings{}, goal, {}, stats);
+        EXPECT_EQ(layers.color.pixels.empty(), stats.wanted_moments > 0);
+        return stats.wanted_moments;
+    };
+    EXPECT_EQ(wanted(0.05, 512), 64);
+    EXPECT_EQ(wanted(0.012, 512), 256);
+    EXPECT_EQ(wanted(0.012, 128), 128) << "all there may be";
+    EXPECT_EQ(wanted(0.2, 512), 0) << "leaves enough";
+    EXPECT_EQ(wanted(0.012, 0), 0) << "as asked for";
+    EXPECT_EQ(wanted(0.012, 512, 1), 0) << "the time limit is for samples";
+}
+
 // A picture to a target counts it, and says when it is out of reach.
 TEST(MomentsError, IsPartOfThePromise) {
     Blurred blurred([](double time) { return time > 0.22 ? 1.0 : 0.0; }, 32);
