@@ -6,6 +6,7 @@
 #include "modes/march/limitations.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
+#include "support/expect.h"
 #include "support/limitations.h"
 #include "support/run_mode.h"
 #include "trace/occlusion/occluders.h"
@@ -164,15 +165,18 @@ TEST(MarchExact, SunInHeightFogMatchesQuadrature) {
 }
 
 TEST(MarchExact, GlowNeedsNoLight) {
-    // Ambient light and emission under a closed roof: (a·A + e/s)(1 - e^-s) for each medium, by its share of both.
+    // Ambient light or, without scattering, emission under a closed roof: (a·A + e/s)(1 - e^-s) for each medium, by its
+    // share of both.
     std::vector<Medium> media{homogeneous_medium(2, unit_box), homogeneous_medium(1, unit_box)};
-    media[0].optics.albedo = vec3(0.5f), media[1].optics.emission.radiance = vec3(0.25f);
-    TestScene stage = make_scene(media, {sun_light({0, -1, 0})}, {roof(50, 2)}, vec3(1, 2, 0));
-    const vec3 radiance = marched(stage.snapshot, exact_settings(), {{0.5f, 0.5f, 3}, {0, 0, -1}, 10}).radiance;
     const double covered = 1 - std::exp(-3.0);
-    EXPECT_NEAR(radiance.x / ((2 * 0.5 + 1 + 0.25) / 3 * covered), 1, 1e-6);
-    EXPECT_NEAR(radiance.y / ((2 * (2 * 0.5 + 1) + 0.25) / 3 * covered), 1, 1e-6);
-    EXPECT_NEAR(radiance.z / (0.25 / 3 * covered), 1, 1e-6);
+    const auto seen = [&](vec3 ambient) {
+        const TestScene stage = make_scene(media, {sun_light({0, -1, 0})}, {roof(50, 2)}, ambient);
+        return marched(stage.snapshot, exact_settings(), {{0.5f, 0.5f, 3}, {0, 0, -1}, 10}).radiance;
+    };
+    media[0].optics.albedo = vec3(0.5f);
+    expect_near(seen({1, 2, 0}), vec3(dvec3(1, 2, 0) * ((2 * 0.5 + 1) / 3 * covered)), 1e-6f);
+    media[0].optics.albedo = media[1].optics.albedo = vec3(0), media[1].optics.emission.radiance = {0.25f, 0.5f, 1};
+    expect_near(seen(vec3(0)), vec3(dvec3(0.25, 0.5, 1) / 3.0 * covered), 1e-6f);
 }
 
 TEST(MarchExact, GridFogMatchesMidpointSums) {
