@@ -130,7 +130,7 @@ class PartsTest(ProgramTest):
         self.refuse(3, [twice, "has samples that are also in"], "merge", *files, twice, "-o", self.path("twice.exr"))
         self.merge(files)
         after = self.attributes("merged.exr")
-        self.assertGreater(float(after["tyndall:samples"]), 3.9 * float(before["tyndall:samples"]))
+        self.assertGreater(float(after["tyndall:samples"]), 3.9 * (float(before["tyndall:samples"]) - 0.5))  # rounded
         share = float(after["tyndall:achievedError"]) / float(before["tyndall:achievedError"])
         self.assertAlmostEqual(share, 0.5, delta=0.1)
 
