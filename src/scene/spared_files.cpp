@@ -1,6 +1,5 @@
 #include "scene/spared_files.h"
 
-#include "base/io/sequence_files.h"
 #include "scene/scene.h"
 
 namespace tyndall {

@@ -133,4 +133,10 @@ std::string gap_note(const FileSequence& sequence, int frame, MissingFrame missi
     return name(first) + (first == last ? " is" : " to " + name(last) + " are") + " missing: " +
            (missing == MissingFrame::hold ? name(near->before) + " is shown instead" : "nothing is shown");
 }
+
+std::vector<std::filesystem::path> all_files(const FileSequence& sequence) {
+    std::vector<std::filesystem::path> files;
+    for (const int number : sequence.files) files.push_back(file_of(sequence, number));
+    return files;
+}
 }

@@ -20,6 +20,9 @@ struct FileSequence {
 // Lists the files that match the pattern. Throws Error (unreadable) if there are none.
 FileSequence find_sequence(const std::string& pattern, const std::filesystem::path& base_directory);
 
+// Every file of a numbered sequence, in the order of their numbers; none for a single file.
+std::vector<std::filesystem::path> all_files(const FileSequence& sequence);
+
 // The file for a scene frame; nothing if the frame has none (clip, skip). Throws Error (unreadable) at a gap with
 // MissingFrame::error.
 std::optional<std::filesystem::path> sequence_file(const FileSequence& sequence, int frame, MissingFrame missing);

@@ -1,7 +1,6 @@
 #include "trace/fog/grid_file.h"
 
 #include "base/error.h"
-#include "base/io/sequence_files.h"
 #include "base/text.h"
 #include "scene/scene.h"
 #include "trace/fog/motion.h"
