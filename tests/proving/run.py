@@ -34,6 +34,7 @@ TRUTH_SHARE = 0.2  # of that, at most, is what the truth is off by
 LADDER = [("draft", 1), ("draft", 2), ("draft", 4), ("preview", 4), ("preview", 8), ("preview", 16), ("final", 16), ("final", 32),
           ("final", 64), ("final", 128), ("final", 256), ("final", 512), ("reference", 64), ("reference", 256),
           ("reference", 1024)]
+LADDER_LIMIT = 3  # times the processor time of the longest run to a target: what takes longer would not be cheapest
 
 
 def scene_with_truth(seed, folder, wanted, options):
@@ -85,12 +86,13 @@ def named_scene_with_truth(name, folder, wanted, options, frame=1):
     return scene, frame, truth, 0
 
 
-def cheapest_plain(program, scene, frame, truth, folder, targets):
-    """Processor seconds of the cheapest run of the ladder that gets to each target, the cheapest of all first."""
+def cheapest_plain(program, scene, frame, truth, folder, targets, most):
+    """Processor seconds of the cheapest run of the ladder that gets to each target within `most` of them, and of the ladder's
+    cheapest run of all."""
     found, first = {}, None
     for quality, samples in LADDER:
         run = render(program, scene, folder / "plain.exr", ["--mode", "march", "--quality", quality, "--samples", samples,
-                     "--frames", frame])
+                     "--frames", frame], processor=most)
         if run.layers is None:
             break
         first = first or run.processor
@@ -117,8 +119,6 @@ def prove(seed, options):
         if truth is None:
             return rows
         common |= {"truth_error": truth.error(), "truth_bound": truth.bound, "truth_seconds": truth.seconds}
-        plain, cheapest = ({}, None) if not options.ladder else cheapest_plain(options.program, scene, frame, truth,
-                                                                              folder, known)
         for target in known:
             for mode in options.modes:
                 run = render(options.program, scene, folder / "asked.exr",
@@ -131,8 +131,13 @@ def prove(seed, options):
                     "candidate": told.get("candidate"), "samples": told.get("samples"), "seconds": run.wall,
                     "processor": run.processor, "forecast": told.get("forecast_seconds"),
                     "took": told.get("goal_seconds"),
-                    "memory": run.stats.get("totals", {}).get("peak_memory_bytes"),
-                    "plain": plain.get(target), "cheapest": cheapest})
+                    "memory": run.stats.get("totals", {}).get("peak_memory_bytes"), "plain": None, "cheapest": None})
+        runs = [row for row in rows if "mode" in row]
+        if options.ladder and runs:
+            most = LADDER_LIMIT * max(row["processor"] for row in runs)
+            plain, cheapest = cheapest_plain(options.program, scene, frame, truth, folder, known, most)
+            for row in runs:
+                row |= {"plain": plain.get(row["asked"]), "cheapest": cheapest}
         return rows
     finally:
         if not options.keep:
