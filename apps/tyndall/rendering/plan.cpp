@@ -93,14 +93,24 @@ std::string command_of(const Plan& plan, const RenderRequest& request, bool one_
     return text;
 }
 
-// The sample counts that the target error takes, measured on the first frame.
-PlannedSamples counted(const Scene& scene, const RenderRequest& request, const RenderPlan& plan, int groups) {
-    const Snapshot snapshot = load_first_frame(scene, request).snapshot;
-    View view = view_of(scene, request, plan.settings, request.frames[0]);
-    view.batches = groups;
+// The sample counts that the target error takes, measured on the first frame; and in the request the number of moments,
+// if the first frame has too few for it.
+PlannedSamples counted(const Scene& scene, RenderRequest& request, const RenderPlan& plan, int groups,
+                       const Globals& globals) {
     Goal goal{request.target_error, 0, request.quality, {}, plan.choice};
+    goal.moment_limit = moment_limit(scene, request, request.frames[0]);
     const FrameOptions options{false, nullptr, &cancel_flag(), {}, {}};
-    return plan_samples(*plan.mode, view, snapshot, plan.settings, goal, options);
+    while (true) {
+        const Snapshot snapshot = load_first_frame(scene, request).snapshot;
+        View view = view_of(scene, request, plan.settings, request.frames[0]);
+        view.batches = groups;
+        PlannedSamples planned = plan_samples(*plan.mode, view, snapshot, plan.settings, goal, options);
+        if (planned.wanted_moments == 0) return planned;
+        request.time_samples = planned.wanted_moments, goal.choice = nullptr; // prepared for fewer
+        if (!globals.quiet)
+            say(formatted("frame %d needs %d time samples for the target error; all frames get as many",
+                          request.frames[0], request.time_samples));
+    }
 }
 
 // The error in the first frame that more samples do not reduce.
@@ -118,7 +128,7 @@ int save(const std::string& file, const Scene& scene, const RenderRequest& asked
     int& samples = plan.settings.pixel.samples;
     const int wanted = samples;
     if (request.target_error > 0) {
-        const PlannedSamples planned = counted(scene, request, plan, groups);
+        const PlannedSamples planned = counted(scene, request, plan, groups, globals);
         plan.settings = planned.settings, samples = groups;
         request.grouping.groups = groups, request.grouping.leaves = leaves_for(groups, planned.samples);
         request.grouping.counts = planned.counts;

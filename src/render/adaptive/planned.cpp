@@ -103,8 +103,11 @@ PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& 
     planned.error.moments =
         moments_of_frame(mode, view, snapshot, choice ? choice->candidate.settings : settings,
                          choice ? choice->measured.prepared : nullptr, pilot.layers, goal.error, options);
-    if (planned.error.moments)
-        goal.error = remaining_error(*planned.error.moments, goal.error).value_or(goal.error); // none = goal missed
+    if (const auto& moments = planned.error.moments) {
+        planned.wanted_moments = moments_for(*moments, static_cast<int>(view.shutter->cameras.size()), goal);
+        if (planned.wanted_moments > 0) return planned;
+        goal.error = remaining_error(*moments, goal.error).value_or(goal.error); // none = goal missed
+    }
     for (uint32_t check = 1; choice && check <= max_checks; ++check) {
         const double bound = noise_target(*choice, goal.error), work = choice->work_to(goal.error);
         const Noise noise{bound, bound, bound};

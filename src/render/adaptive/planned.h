@@ -9,12 +9,14 @@ struct PlannedSamples {
     Settings settings;                         // of the candidate
     std::shared_ptr<const TileFactors> counts; // samples per pixel of each tile, divided by the groups
     PlannedError error;
-    double samples = 0; // per pixel, on average
-    double seconds = 0; // predicted for a single run on this machine
+    double samples = 0;     // per pixel, on average
+    double seconds = 0;     // predicted for a single run on this machine
+    int wanted_moments = 0; // that the goal needs, if nothing was planned as the frame has too few
 };
 
 // Plans from an image of eight samples per pixel, which is then discarded; the error bound is likely to be at most
-// goal.error, which must be above 0. `view` is the frame's, with one batch per group.
+// goal.error, which must be above 0. Where the frame has too few moments for that, says how many to try. `view` is the
+// frame's, with one batch per group.
 PlannedSamples plan_samples(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                             const Goal& goal, const FrameOptions& options);
 

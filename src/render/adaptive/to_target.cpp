@@ -6,11 +6,9 @@
 #include "render/adaptive/errors/shutter_error.h"
 #include "render/adaptive/target_rounds.h"
 #include "render/frame/layers.h"
-#include "trace/shutter_motion.h"
 #include "trace/transmittance/light_depth.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <limits>
 
@@ -55,16 +53,6 @@ struct Rendering {
     Settings settings;                        // of the candidate
     std::shared_ptr<const Prepared> prepared; // null = each round prepares itself
 };
-
-// A larger number of moments if the error of so many takes up most of the goal, else 0. It falls at least as 1 / n once
-// copies of what moves overlap. A time limit is left to the samples.
-int moments_for(const Noise& error, int count, const Goal& goal) {
-    constexpr double largest = 0.7, wanted = 0.5; // of the goal's error
-    if (goal.error == 0 || goal.seconds > 0 || error.bound <= largest * goal.error) return 0;
-    const double times = std::min(std::ceil(error.bound / (wanted * goal.error)), double{max_moments});
-    const int more = std::min(goal.moment_limit, count * static_cast<int>(std::bit_ceil(static_cast<unsigned>(times))));
-    return more > count ? more : 0;
-}
 
 // Error of motion blur from the shutter's moments, if any; reduces goal.error to what that leaves, and sets the number
 // of moments `wanted` instead, 0 = these.

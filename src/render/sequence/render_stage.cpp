@@ -67,7 +67,7 @@ void add_moments(const Pipeline& pipeline, FrameJob& work, int count) {
     RenderRequest request = pipeline.request;
     request.time_samples = count;
     const int frame = work.report.frame;
-    say(pipeline, work, "needs " + std::to_string(count) + " moments of motion blur for the target error");
+    say(pipeline, work, "needs " + std::to_string(count) + " time samples for the target error");
     work.finer = make_snapshot(pipeline.scene, moments_of(pipeline.scene, request, frame), &work.snapshot,
                                request.missing, request.files);
     work.view = view_of(pipeline.scene, request, pipeline.plan.settings, frame);

@@ -150,10 +150,17 @@ class ShutterTest(ProgramTest):
         self.assertGreater(used, 8)
         self.assertLessEqual(frame()["error_bound"], 0.1)
         self.assertEqual(self.attributes("a.exr")["tyndall:timeSamples"], str(used))
-        self.assertIn(f"needs {used} moments", said.stdout + said.stderr)
+        self.assertIn(f"needs {used} time samples", said.stdout + said.stderr)
         self.succeed("render", scene, "-o", self.path("truth.exr"), "--frames", "3", "--samples", 256, "--time-samples", 512,
                      "--seed", 2, "-q")
         self.succeed("compare", self.path("a.exr"), self.path("truth.exr"), "--fail-above", "rmse_rel=0.11")
+
+        plan = self.path("plan.json")
+        said = self.succeed("plan", scene, "--mode", "march", "--frames", "3", "--target-error", 0.1, "--save", plan)
+        self.assertIn(f"needs {json.loads(plan.read_text())['time_samples']} time samples", said.stderr)
+        run("render", "--plan", plan, "-o", self.path("planned.exr"), "--stats-json", self.path("stats.json"), "-q")
+        self.assertLess(frame()["moments_error"], 0.07)
+        self.succeed("compare", self.path("planned.exr"), self.path("truth.exr"), "--fail-above", "rmse_rel=0.11")
 
     def test_bad_shutters_are_refused_in_one_line(self):
         scene = self.scene()

@@ -1,10 +1,12 @@
 #include "render/adaptive/errors/shutter_error.h"
 
 #include "base/clock.h"
+#include "trace/shutter_motion.h"
 #include "trace/snapshot.h"
 #include "trace/transmittance/light_depth.h"
 #include "trace/view.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace tyndall {
@@ -71,5 +73,13 @@ SquaredError moments_error(const Mode& mode, const View& view, const Snapshot& s
             return found;
         grow(pilot, found.by_noise);
     }
+}
+
+int moments_for(const Noise& error, int count, const Goal& goal) {
+    constexpr double largest = 0.7, wanted = 0.5; // of the goal's error
+    if (goal.error == 0 || goal.seconds > 0 || error.bound <= largest * goal.error) return 0;
+    const double times = std::min(std::ceil(error.bound / (wanted * goal.error)), double{max_moments});
+    const int more = std::min(goal.moment_limit, count * static_cast<int>(std::bit_ceil(static_cast<unsigned>(times))));
+    return more > count ? more : 0;
 }
 }

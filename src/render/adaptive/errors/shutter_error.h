@@ -1,6 +1,7 @@
 // Error of motion blur from a frame's moments (time samples) against that of a continuously open shutter: no number of
 // samples removes it.
 #pragma once
+#include "render/adaptive/goal.h"
 #include "render/adaptive/pilot.h"
 
 namespace tyndall {
@@ -12,4 +13,8 @@ namespace tyndall {
 SquaredError moments_error(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                            const Prepared& prepared, const TileChances& chances, double error, bool once,
                            const FrameOptions& options);
+
+// A larger number of moments if the error of `count` takes up most of the goal's, else 0. It falls at least as 1 / n
+// once copies of what moves overlap. A time limit is left to the samples.
+int moments_for(const Noise& error, int count, const Goal& goal);
 }
