@@ -1,6 +1,6 @@
 // Selects the grids of a file that a scene refers to.
 #pragma once
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
 
 #include <span>
 #include <string>

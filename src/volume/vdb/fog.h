@@ -1,6 +1,6 @@
 // Turns a stored tree into fog: cleans values and clears everything outside the box of the active voxels.
 #pragma once
-#include "volume/vdb/codec.h"
+#include "volume/vdb/library/codec.h"
 
 namespace tyndall {
 // Box of the active voxels and tiles, inclusive; high < low if there are none.

@@ -1,7 +1,7 @@
 // Loads whole grids of a file: what reading a volume and describing it share.
 #pragma once
 #include "base/error.h"
-#include "volume/vdb/codec.h"
+#include "volume/vdb/library/codec.h"
 
 #include <new>
 

@@ -1,6 +1,6 @@
 // The voxels that are active in any of several grids.
 #pragma once
-#include "volume/vdb/codec.h"
+#include "volume/vdb/library/codec.h"
 
 namespace tyndall {
 // Whether two trees have the same leaves, active voxels and active tiles.

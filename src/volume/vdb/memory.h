@@ -1,6 +1,6 @@
 // Estimates the memory of a tree and checks that it is available.
 #pragma once
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
 
 namespace tyndall {
 // Bytes of the library's tree (leaves without values) and of the decoded tree, which coexist briefly.

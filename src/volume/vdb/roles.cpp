@@ -1,7 +1,7 @@
 #include "volume/vdb/roles.h"
 
 #include "base/text.h"
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
 
 #include <algorithm>
 #include <string>

@@ -4,8 +4,8 @@
 #include "base/io/file.h"
 #include "base/text.h"
 #include "volume/vdb/choose.h"
+#include "volume/vdb/file/head.h"
 #include "volume/vdb/fog.h"
-#include "volume/vdb/head.h"
 #include "volume/vdb/load.h"
 #include "volume/vdb/mask_union.h"
 

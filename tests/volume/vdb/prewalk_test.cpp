@@ -1,5 +1,5 @@
 // Hostile and cut files: every one is refused by place, and none reaches the library.
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
 #include "volume/vdb/vdb.h"
 #include "volume/vdb/vdb_fixtures.h"
 

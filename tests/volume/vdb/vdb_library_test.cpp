@@ -2,7 +2,7 @@
 #include "base/parallel.h"
 #include "support/threads.h"
 #include "volume/bricks/voxel_mask.h"
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
 #include "volume/vdb/vdb.h"
 #include "volume/vdb/vdb_fixtures.h"
 

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "volume/vdb/choose.h"
-#include "volume/vdb/transform.h"
+#include "volume/vdb/file/transform.h"
 
 #include <blosc.h>
 #include <nanovdb/NanoVDB.h>

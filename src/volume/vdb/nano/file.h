@@ -1,7 +1,7 @@
 // The directory of grids in a NanoVDB file, and the decompressed bytes of each.
 #pragma once
 #include "volume/bricks/leaf_memory.h"
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
 
 namespace tyndall {
 // True for a NanoVDB file; does not move the cursor.

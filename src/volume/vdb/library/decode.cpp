@@ -1,7 +1,7 @@
-#include "volume/vdb/codec.h"
 #include "volume/vdb/inactive_tiles.h"
-#include "volume/vdb/library_errors.h"
-#include "volume/vdb/stream.h"
+#include "volume/vdb/library/codec.h"
+#include "volume/vdb/library/library_errors.h"
+#include "volume/vdb/library/stream.h"
 
 #include <openvdb/Grid.h>
 #include <openvdb/io/io.h>

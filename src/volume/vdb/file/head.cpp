@@ -1,4 +1,4 @@
-#include "volume/vdb/head.h"
+#include "volume/vdb/file/head.h"
 
 #include "base/io/file.h"
 #include "base/text.h"

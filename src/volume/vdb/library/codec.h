@@ -1,8 +1,8 @@
 // The OpenVDB library behind two functions: decodes the bytes of a tree to plain leaves and tiles, and encodes a volume
 // to the bytes of a file.
 #pragma once
-#include "volume/vdb/leaves.h"
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
+#include "volume/vdb/library/leaves.h"
 #include "volume/vdb/vdb.h"
 
 #include <string>

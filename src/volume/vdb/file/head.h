@@ -1,6 +1,6 @@
 // The header of an OpenVDB file: magic and versions, UUID, and file metadata.
 #pragma once
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
 
 #include <ostream>
 #include <string>

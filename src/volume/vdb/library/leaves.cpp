@@ -1,8 +1,8 @@
-#include "volume/vdb/leaves.h"
+#include "volume/vdb/library/leaves.h"
 
 #include "base/parallel.h"
 #include "volume/bricks/half.h"
-#include "volume/vdb/stream.h"
+#include "volume/vdb/library/stream.h"
 
 #include <openvdb/Types.h>
 #include <openvdb/io/Compression.h>

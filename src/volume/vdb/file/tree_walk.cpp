@@ -1,6 +1,6 @@
 // Walks the tree of a grid in file order: first the topology (root, 32³ and 16³ nodes, voxel masks), then, in the same
 // order, the values of every leaf, in compressed chunks that may hold active values only.
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
 
 #include "base/error.h"
 

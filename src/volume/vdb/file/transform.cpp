@@ -1,4 +1,4 @@
-#include "volume/vdb/transform.h"
+#include "volume/vdb/file/transform.h"
 
 #include "base/text.h"
 

@@ -1,4 +1,4 @@
-#include "volume/vdb/bytes.h"
+#include "volume/vdb/file/bytes.h"
 
 #include "base/error.h"
 #include "base/io/file.h"

@@ -1,9 +1,9 @@
-#include "volume/vdb/prewalk.h"
+#include "volume/vdb/file/prewalk.h"
 
 #include "base/error.h"
 #include "base/text.h"
+#include "volume/vdb/file/transform.h"
 #include "volume/vdb/nano/file.h"
-#include "volume/vdb/transform.h"
 
 #include <cstring>
 #include <sstream>

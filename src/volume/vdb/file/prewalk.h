@@ -3,7 +3,7 @@
 // truncated files name the location.
 #pragma once
 #include "base/math.h"
-#include "volume/vdb/bytes.h"
+#include "volume/vdb/file/bytes.h"
 
 #include <string>
 #include <utility>

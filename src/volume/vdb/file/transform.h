@@ -1,7 +1,7 @@
 // The transform record of a grid in an OpenVDB file.
 #pragma once
 #include "base/math.h"
-#include "volume/vdb/bytes.h"
+#include "volume/vdb/file/bytes.h"
 
 #include <string>
 

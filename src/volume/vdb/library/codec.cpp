@@ -1,9 +1,9 @@
-#include "volume/vdb/codec.h"
+#include "volume/vdb/library/codec.h"
 
 #include "base/io/file.h"
-#include "volume/vdb/head.h"
-#include "volume/vdb/library_errors.h"
-#include "volume/vdb/stream.h"
+#include "volume/vdb/file/head.h"
+#include "volume/vdb/library/library_errors.h"
+#include "volume/vdb/library/stream.h"
 #include "volume/vdb/tree_order.h"
 
 #include <openvdb/Grid.h>
