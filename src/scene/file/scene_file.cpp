@@ -159,6 +159,7 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
         load_gltf(file, options, scene);
         scene.origin = far_origin({}, scene);
         note_hidden_lights(scene);
+        add_missing_camera(scene); // before the fog, whose bounds are far larger than what there is to see
         add_missing_light_and_fog(scene);
     } else {
         const std::string text = read_file(file);
@@ -169,8 +170,8 @@ Scene load_scene(const std::filesystem::path& file, const LoadOptions& options) 
         check_schema(document, scene_schema, file.string());
         add_input(scene, scene.file, text);
         read_scene_document(document, scene, options);
+        add_missing_camera(scene);
     }
-    add_missing_camera(scene);
     return scene;
 }
 

@@ -34,6 +34,11 @@ TEST(Gltf, ATriangleWithWhatItLacks) {
     EXPECT_EQ(scene.media.size(), 1u);
     EXPECT_EQ(scene.cameras.size(), 1u);
     for (const char* part : {"no light", "no fog", "no camera"}) EXPECT_TRUE(has_warning(scene, part)) << part;
+    // The camera frames the triangle, not the fog: a sphere around the triangle fills most of the image's height.
+    const float distance = glm::distance(scene.cameras[0].position.at(0), vec3(0.5f, 0.5f, 0));
+    const float across = 2 * std::asin(std::sqrt(0.5f) / distance), vertical_fov = scene.cameras[0].vertical_fov.at(0);
+    EXPECT_LE(across, vertical_fov);
+    EXPECT_GT(across, 0.9f * vertical_fov);
     // Its fog has no edge to be seen nearby, yet lets light in, from above and from the side.
     EXPECT_EQ(scene.media[0].kind, MediumKind::height);
     const float reach = scene.media[0].bounds.high.x;
