@@ -30,6 +30,11 @@ const VdbGridInfo* grid_like(const VdbInfo& info, GridRole role) {
     return found == info.grids.end() ? nullptr : &*found;
 }
 
+// Whether a simulation of fire left its flames at 0.
+bool is_without_flames(const VdbInfo& info) {
+    return std::ranges::count(info.grids, GridRole::flame, &VdbGridInfo::role) > 0 && !grid_like(info, GridRole::flame);
+}
+
 // A number to three significant digits, in the usual notation without exponents.
 std::string digits(float value) {
     return json_number(parsed<float>(formatted("%.3g", static_cast<double>(value))).value_or(0));
@@ -91,10 +96,12 @@ float default_extinction(const VdbGridInfo& fog) {
 std::string medium_text(const std::filesystem::path& vdb, const VdbInfo& info) {
     const VdbGridInfo *density = density_of(info), *color = grid_like(info, GridRole::color),
                       *temperature = grid_like(info, GridRole::temperature), *flame = grid_like(info, GridRole::flame);
+    const bool dims = density && density->maximum > 0;
     if (!temperature) temperature = std::exchange(flame, nullptr); // a flame grid serves as the temperature
+    if (dims && temperature && temperature->maximum <= in_kelvin && is_without_flames(info))
+        temperature = nullptr; // the heat that makes smoke rise
     const VdbGridInfo* emission = temperature ? nullptr : grid_like(info, GridRole::emission);
     if (!density && !temperature && !emission) return {};
-    const bool dims = density && density->maximum > 0;
     std::vector<std::string> grids;
     if (dims && can_be_named(*density)) grids.push_back(member("density", density_text(*density)));
     if (dims && color) grids.push_back(member("albedo", color_name(*color)));

@@ -150,6 +150,13 @@ TEST(MediaGrids, InfoSaysWhatToWrite) {
     EXPECT_EQ(medium_text("fire.vdb", info), R"({"type": "vdb", "file": "fire.vdb", "extinction": 0, "grids": {)"
                                              R"("temperature": "temperature"}, "blackbody": {"convention": "kelvin", )"
                                              R"("emission_scale": 1}})");
+    // Smoke of a simulation whose fire does not burn is warm, but does not glow.
+    info.grids = {grid("density", GridRole::density, 2), grid("temperature", GridRole::temperature, 1),
+                  grid("flame", GridRole::flame, 0)};
+    EXPECT_EQ(medium_text("smoke.vdb", info),
+              R"({"type": "vdb", "file": "smoke.vdb", "extinction": 0.115, "grids": {"density": "density"}})");
+    info.grids.pop_back();
+    EXPECT_THAT(medium_text("fire.vdb", info), HasSubstr(R"("temperature": {"grid": "temperature", "scale": 2000})"));
     info.grids = {grid("surface", GridRole::level_set, 3)};
     info.grids[0].background = 3;
     EXPECT_THAT(medium_text("ball.vdb", info), HasSubstr(R"("density": {"grid": "surface", "width": 1.5})"));
