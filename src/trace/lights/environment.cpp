@@ -159,7 +159,7 @@ std::shared_ptr<const Environment> environment_at(const Scene& scene, const Mome
     environment->volume_scale = mean_factor(moment, source.volume_scale, scale);
     environment->surface_scale = mean_factor(moment, source.surface_scale, scale);
     environment->shadows = source.shadows, environment->casters = links.x, environment->lit = links.y;
-    if (!is_finite(environment->mean()))
+    if (!is_finite(4 * pi * environment->mean())) // the light of all directions
         refuse(scene.file.string(), named("light", source.name) + ": its radiance overflows");
     const bool shines =
         max_component(environment->mean()) > 0 && std::max(environment->volume_scale, environment->surface_scale) > 0;
