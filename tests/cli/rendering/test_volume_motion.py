@@ -1,5 +1,6 @@
 """Volumes that move while the shutter is open, from files to the picture and its parts, and what is refused."""
 import json
+import math
 import unittest
 
 from cli.exr import read_channels
@@ -112,12 +113,98 @@ class VolumeMotion(ProgramTest):
         self.refuse(4, ["dust.0003.vdb", "missing"], "render", gap, "-o", self.path("a.exr"), "-q")
         self.render(gap, "a.exr", "--missing", "hold")
 
+    def foreign(self, name):
+        """A folder of volumes by others, of those that do not travel with the program."""
+        folder = next((path / "vdb" / name for path in CORPORA if (path / "vdb" / name).is_dir()), None)
+        if not folder:
+            self.skipTest("these files do not travel with the program")
+        return folder
+
+    def test_a_velocity_that_is_the_same_everywhere_shifts(self):
+        """Fifteen meters per second downwards: 10 voxels of 1/16 m in a frame of 1/24 s."""
+        wind = {"grids": {"velocity": {"file": str(self.foreign("zeno") / "vel_VDB_bound_v02.vdb"), "grid": "vel"}}}
+        camera = {"position": [0, 0, 5], "target": [0, 0, 0], "ortho_height": 4}  # rows of 1/8 m
+
+        def picture(medium, shutter, *options):
+            look = {**camera, "shutter": shutter} if shutter else camera
+            return self.render(self.scene("shift.json", medium, camera=look, resolution=[32, 32]), "shift.exr", *options)
+
+        # At one moment, the file in another place.
+        for mode in ("march", "froxel"):
+            for frames in (1, -1):
+                shutter = {"open": frames - 0.01, "close": frames + 0.01}
+                moved = picture(wind, shutter, "--mode", mode, "--time-samples", 1, "--samples", 1)
+                placed = picture({"translate": [0, -0.625 * frames, 0]}, None, "--mode", mode, "--samples", 1)
+                self.assertEqual(moved["A"], placed["A"], (mode, frames))
+                self.assertGreater(rms(placed["A"], picture({}, None, "--mode", mode, "--samples", 1)["A"]), 0.1, "it is elsewhere")
+
+        # Over the whole shutter, the optical depth keeps its sum and its center moves by half the way.
+        def center(medium, shutter=None):
+            alpha = picture({**medium, "extinction": 0.01}, shutter, "--samples", 64)["A"]
+            depths = [-math.log1p(-value) for value in alpha]
+            height = sum(depth * (2 - (i // 32 + 0.5) / 8) for i, depth in enumerate(depths))
+            return height / sum(depths), sum(depths)
+
+        at, amount = center({})
+        for shutter in ({"open": 0, "close": 1}, {"open": -1, "close": 0}, {"open": 0.5, "close": 1.5}):
+            moved, same = center(wind, shutter)
+            way = -0.625 * (shutter["open"] + shutter["close"]) / 2
+            # Moved every half voxel, each of the 4 time samples or more is a quarter of a voxel off at most.
+            self.assertAlmostEqual(moved - at, way, delta=0.0625 / 4 / 4, msg=shutter)
+            self.assertAlmostEqual(same / amount, 1, delta=0.01, msg=shutter)
+
+    def test_fire_whose_voxels_change_their_size(self):
+        """Each frame of it where its voxels are, nearly empty ones too, and halfway between two frames their mean."""
+        folder = self.foreign("pesichra")
+        camera = {"position": [0.55, 0.3, 5], "target": [0.55, 0.3, 0], "ortho_height": 1.28}  # pixels of 0.02 m
+        look = {"camera": camera, "resolution": [64, 64], "lights": [], "background": {"color": 0}}
+
+        def render(medium, frame, **changes):
+            self.write("fire.json", lit_scene(**{**look, "frames": str(frame), "media": [medium], **changes}))
+            self.succeed("render", self.path("fire.json"), "-o", self.path("fire.exr"), "--background", "off", "--aov", "emission",
+                         "--samples", 16, "--set", "pixel.filter=box", "--float", "-q", timeout=120)
+            return read_channels(self.path("fire.exr"))
+
+        for frame in range(45, 51):
+            report = self.info(folder / f"fluid_data_{frame:04}.vdb")
+            medium = json.loads(report["scene_medium"])
+            self.assertEqual(medium["grids"].pop("velocity"), "velocity")
+            self.assertLessEqual({"density", "temperature", "flame"}, set(medium["grids"]))
+            picture = render({**medium, "file": str(folder / medium["file"]), "up_axis": "Z"}, frame)
+            self.assertGreater(max(picture["emission.R"]), 1, "a flame has nits by the thousand")
+            self.assertTrue(all(math.isfinite(value) for values in picture.values() for value in values))
+            [grid] = [grid for grid in report["grids"] if grid["name"] == "density"]
+            seen = [i for i, alpha in enumerate(picture["A"]) if alpha > 0]
+            columns, rows = [i % 64 for i in seen], [i // 64 for i in seen]
+            low, high, side = grid["bounds"]["low"], grid["bounds"]["high"], grid["voxel_size"][0]
+            for edge, wanted in ((-0.09 + 0.02 * min(columns), low[0]), (-0.09 + 0.02 * (max(columns) + 1), high[0]),
+                                 (0.94 - 0.02 * (max(rows) + 1), low[2]), (0.94 - 0.02 * min(rows), high[2])):
+                self.assertAlmostEqual(edge, wanted, delta=side + 0.02 + 0.02, msg=frame)  # half a voxel, and the filter's pixel
+
+        thin = {"type": "vdb", "file": str(folder / "fluid_data_####.vdb"), "up_axis": "Z", "extinction": 1}
+        half = {"camera": {**camera, "shutter": {"open": 0.49, "close": 0.51}}}
+        for frame in (45, 47):
+            ends = [render(thin, number)["A"] for number in (frame, frame + 1)]
+            mixed = render({**thin, "sequence": {"blend": True}}, frame, **half)["A"]
+            self.assertLess(rms(mixed, [(a + b) / 2 for a, b in zip(*ends)]), 0.05 * rms(*ends), frame)
+
+    def test_smoke_without_flames_does_not_glow(self):
+        file = self.foreign("wavelet") / "fluid_data_0151.vdb"
+        medium = json.loads(self.info(file)["scene_medium"])
+        self.assertNotIn("blackbody", medium)
+        self.assertEqual(medium["grids"], {"density": "density", "velocity": "velocity"})
+        burning = {"temperature": {"grid": "temperature", "scale": 2000}, "flame": "flame"}
+        for grids in (medium["grids"], {**medium["grids"], **burning}):
+            medium.update({"file": str(file), "up_axis": "Z", "grids": grids, **({"blackbody": {"convention": "kelvin"}} if "flame" in grids else {})})
+            picture = self.render(self.scene("smoke.json", medium, camera={"position": [6, 6, 20], "target": [6, 6, -6]}), "smoke.exr",
+                                  "--aov", "emission")
+            self.assertGreater(sum(picture["A"]), 10)
+            self.assertEqual(max(picture.get("emission.R", [0])), 0)
+
     def test_files_of_others(self):
         """Mantaflow's staggered velocities, fire among them, and voxels whose size changes from file to file."""
         for name, pattern, frame in (("wavelet", "fluid_data_####.vdb", 151), ("pesichra", "fluid_data_####.vdb", 48)):
-            folder = next((path / "vdb" / name for path in CORPORA if (path / "vdb" / name).is_dir()), None)
-            if not folder:
-                self.skipTest("these files do not travel with the program")
+            folder = self.foreign(name)
             for medium in ({"grids": {"velocity": "velocity"}, "velocity_scale": 0.05}, {"sequence": {"blend": True}}):
                 scene = self.write("others.json", lit_scene(
                     camera={"position": [0, 1, 4], "target": [0, 0.5, 0], "shutter": {"open": -0.25, "close": 0.25}},
