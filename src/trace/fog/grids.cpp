@@ -109,7 +109,10 @@ void place_grids(const mat4& matrix, const FogSource& fog, MediumGrids& grids) {
         for (const PlacedBricks& channel : property->channels) placement.add(channel);
         placement.add(property->coverage);
     }
-    if (fog.bricks) placement.add(fog.bricks, fog.placed);
+    if (fog.placed)
+        placement.add(fog.bricks, fog.placed);
+    else
+        placement.add({fog.bricks, fog.index_to_world});
     grids.placed_color = placement(grids.color);
     grids.placed_blackbody = placement(grids.blackbody), grids.placed_colored = placement(grids.colored);
     grids.matrix = matrix, grids.is_placed = true;
@@ -127,9 +130,44 @@ void append_part(const EmissionPart& part, const std::string& name, vec3 scale, 
 }
 }
 
+// The grids of `before` (may be null) that its light in a frame comes from; null if it has none.
+const MediumGrids* light_before(const MediumGrids* before, int frame) {
+    if (!before || before->blended.empty()) return before;
+    const auto found = std::ranges::find(before->blended, frame, &BlendedLight::frame);
+    return found == before->blended.end() ? nullptr : found->grids.get();
+}
+
 bool has_grids(const MediumSource& source) {
     const bool has_temperature = source.temperature || (source.recipe && source.recipe->fire);
     return source.albedo_grid || source.emission_grid || (source.blackbody && has_temperature);
+}
+
+namespace {
+void read_light(const MediumSource& source, const ReadContext& reading, const MediumGrids* before, MediumGrids& grids) {
+    const auto known = [&](GridProperty MediumGrids::*property) { return before ? &(before->*property) : nullptr; };
+    grids.emission = grid_property(source.emission_grid, 1, Quantity::color, reading, known(&MediumGrids::emission));
+    const GridProperty* const temperature = known(&MediumGrids::temperature);
+    grids.temperature = source.recipe ? grown_temperature(source, reading, temperature)
+                                      : grid_property(source.temperature, 2, Quantity::number, reading, temperature);
+    grids.flame = grid_property(source.flame, 3, Quantity::number, reading, known(&MediumGrids::flame));
+}
+
+// Each file's own, with the density in `frames` of the fog that absorbs.
+std::vector<BlendedLight> blended_light(const MediumSource& source, Moment moment, const SequenceTime& time,
+                                        MissingFrame missing, const mat4& matrix, const MediumGrids* before,
+                                        FogFrames& frames, Snapshot& snapshot) {
+    std::vector<BlendedLight> lights{{time.frame, 1 - time.share, 1, {}}, {time.frame + 1, time.share, 1, {}}};
+    for (size_t i = 0; i < lights.size(); ++i) {
+        BlendedLight& light = lights[i];
+        const FogSource fog = i < frames.densities.size() ? frames.densities[i] : FogSource();
+        light.unit = fog.unit;
+        SequenceTime own;
+        own.frame = light.frame;
+        light.grids = medium_grids(source, moment, own, missing, matrix, fog, light_before(before, light.frame), frames,
+                                   snapshot);
+    }
+    return lights;
+}
 }
 
 std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Moment moment, const SequenceTime& time,
@@ -138,16 +176,16 @@ std::shared_ptr<const MediumGrids> medium_grids(const MediumSource& source, Mome
     const ReadContext reading{source.name, moment, time, missing, before, frames, snapshot};
     auto grids = std::make_shared<MediumGrids>();
     grids->albedo = grid_property(source.albedo_grid, 0, Quantity::share, reading, before ? &before->albedo : nullptr);
-    grids->emission =
-        grid_property(source.emission_grid, 1, Quantity::color, reading, before ? &before->emission : nullptr);
-    const GridProperty* const temperature_before = before ? &before->temperature : nullptr;
-    grids->temperature = source.recipe
-                             ? grown_temperature(source, reading, temperature_before)
-                             : grid_property(source.temperature, 2, Quantity::number, reading, temperature_before);
-    grids->flame = grid_property(source.flame, 3, Quantity::number, reading, before ? &before->flame : nullptr);
+    std::vector<BlendedLight> blended;
+    if (time.share > 0 && (source.emission_grid || source.blackbody))
+        blended = blended_light(source, moment, time, missing, matrix, before, frames, snapshot);
+    else
+        read_light(source, reading, light_before(before, time.frame), *grids);
     grids->key = key_of(source, moment.seconds, *grids, fog);
-    if (before && before->key == grids->key) {
-        *grids = *before;
+    const bool same = before && before->key == grids->key;
+    if (same) *grids = *before;
+    grids->blended = std::move(blended);
+    if (same) {
         if (grids->is_placed && grids->matrix == matrix) return grids;
     } else {
         if (grids->albedo) {
@@ -170,8 +208,10 @@ void color_medium(const MediumSource& source, double seconds, const MediumGrids&
     medium.optics.albedo_field = grids.placed_color;
 }
 
-void append_light(const MediumSource& source, const Moment& moment, const MediumGrids& grids, float unit,
-                  Snapshot& snapshot) {
+namespace {
+// A share of the light of grids of one file.
+void append_own_light(const MediumSource& source, const Moment& moment, const MediumGrids& grids, float unit,
+                      float share, Snapshot& snapshot) {
     const double seconds = moment.seconds;
     if (source.blackbody) {
         const BlackbodySource& blackbody = *source.blackbody;
@@ -184,9 +224,17 @@ void append_light(const MediumSource& source, const Moment& moment, const Medium
             const EmissionField* field = grids.placed_blackbody.field.get();
             if (field && !field->albedo) scale *= 1.0f - source.albedo.at(seconds);
         }
-        append_part(grids.placed_blackbody, source.name + " (blackbody)", scale, snapshot);
+        append_part(grids.placed_blackbody, source.name + " (blackbody)", share * scale, snapshot);
     }
-    append_part(grids.placed_colored, source.name + " (emission)",
-                mean_brightness(moment, [&](double time) { return source.emission.at(time); }), snapshot);
+    const vec3 scale = mean_brightness(moment, [&](double time) { return source.emission.at(time); });
+    append_part(grids.placed_colored, source.name + " (emission)", share * scale, snapshot);
+}
+}
+
+void append_light(const MediumSource& source, const Moment& moment, const MediumGrids& grids, float unit,
+                  Snapshot& snapshot) {
+    append_own_light(source, moment, grids, unit, 1, snapshot);
+    for (const BlendedLight& light : grids.blended)
+        append_own_light(source, moment, *light.grids, light.unit, light.share, snapshot);
 }
 }

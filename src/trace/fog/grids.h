@@ -4,6 +4,7 @@
 
 namespace tyndall {
 struct FogFrames;
+struct MediumGrids;
 struct MediumSource;
 struct SequenceTime;
 
@@ -12,6 +13,15 @@ struct EmissionPart {
     std::shared_ptr<const EmissionField> field;
     PlacedBricks luminance;
     vec3 radiance{0};
+};
+
+// The light of one of two files that are blended, which adds up: between a flame and the air beside it, a blended
+// temperature would hardly glow.
+struct BlendedLight {
+    int frame = 0;
+    float share = 0;
+    float unit = 1; // as FogSource::unit, of that frame
+    std::shared_ptr<const MediumGrids> grids;
 };
 
 // All grid properties of a medium, and what is derived from them before and after the medium's transform.
@@ -25,6 +35,7 @@ struct MediumGrids {
     bool is_placed = false;
     std::shared_ptr<const AlbedoField> placed_color;
     EmissionPart placed_blackbody, placed_colored;
+    std::vector<BlendedLight> blended;       // in place of own emission, temperature and flame
     std::shared_ptr<const FogFrames> frames; // for fog that moves while the shutter is open; else null
 };
 

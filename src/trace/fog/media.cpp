@@ -120,7 +120,7 @@ FogSource read_between(const MediumSource& source, const SequenceTime& time, Mis
     const auto of_frame = [&](int frame) {
         FogSource fog = read(source, frame, missing, known, snapshot);
         fog.placed = nullptr, fog.grids = nullptr;
-        if (!fog.key.empty()) frames.densities.push_back(fog);
+        frames.densities.push_back(fog);
         return fog;
     };
     const FogSource here = of_frame(time.frame), next = time.share > 0 ? of_frame(time.frame + 1) : FogSource();

@@ -31,7 +31,7 @@ struct SequenceTime {
 
 // File contents of moving fog, kept for the next moment.
 struct FogFrames {
-    std::vector<FogSource> densities;
+    std::vector<FogSource> densities; // of SequenceTime::frame and, where files are blended, of the next one
     std::array<std::vector<GridProperty>, 4> properties; // albedo, emission, temperature, flame
     std::shared_ptr<const FileVelocity> velocity;
     int frame = 0;    // as in SequenceTime

@@ -113,6 +113,24 @@ class VolumeMotion(ProgramTest):
         self.refuse(4, ["dust.0003.vdb", "missing"], "render", gap, "-o", self.path("a.exr"), "-q")
         self.render(gap, "a.exr", "--missing", "hold")
 
+    def test_blended_fire_has_the_light_of_both_files(self):
+        """Halfway, where the mean of a flame's temperature and that of the air beside it would hardly glow."""
+        fire = {"base": [0, 0, 0], "height": 0.8, "radius": 0.3, "rise": 6, "flicker": 1, "soot": 0.2,
+                "noise": {"octaves": 2, "scale": 0.2}}
+        self.succeed("bake", self.write("fire.json", recipe(fire=fire)), "-o", self.path("fire.####.vdb"), "--frames", "2-3", "-q")
+
+        def emission(blackbody, sequence, **shutter):
+            fields = {"file": "fire.####.vdb", "extinction": 1e-3, "grids": {"temperature": "temperature"}, "blackbody": blackbody,
+                      "translate": [0.1, 0, 0], "sequence": sequence}
+            return self.render(self.scene("fire_scene.json", fields, shutter), "fire.exr", "--aov", "emission")["emission.R"]
+
+        for blackbody in ({"convention": "kelvin"}, {"convention": "kelvin", "kirchhoff": True}, {"convention": "cycles"}):
+            ends = [emission(blackbody, {"offset": offset}) for offset in (0, 1)]
+            mixed = emission(blackbody, {"blend": True}, open=0.49, close=0.51)
+            mean = [(a + b) / 2 for a, b in zip(*ends)]
+            self.assertGreater(rms(*ends), 0.2 * rms(mean, [0] * len(mean)), "the flames differ")
+            self.assertLess(rms(mixed, mean), 0.02 * rms(*ends), blackbody)
+
     def foreign(self, name):
         """A folder of volumes by others, of those that do not travel with the program."""
         folder = next((path / "vdb" / name for path in CORPORA if (path / "vdb" / name).is_dir()), None)
@@ -181,12 +199,16 @@ class VolumeMotion(ProgramTest):
                                  (0.94 - 0.02 * (max(rows) + 1), low[2]), (0.94 - 0.02 * min(rows), high[2])):
                 self.assertAlmostEqual(edge, wanted, delta=side + 0.02 + 0.02, msg=frame)  # half a voxel, and the filter's pixel
 
-        thin = {"type": "vdb", "file": str(folder / "fluid_data_####.vdb"), "up_axis": "Z", "extinction": 1}
+        burning = {"grids": {"temperature": {"grid": "temperature", "scale": 1000}, "flame": "flame"},
+                   "blackbody": {"convention": "kelvin"}}
+        thin = {"type": "vdb", "file": str(folder / "fluid_data_####.vdb"), "up_axis": "Z", "extinction": 1, **burning}
         half = {"camera": {**camera, "shutter": {"open": 0.49, "close": 0.51}}}
         for frame in (45, 47):
-            ends = [render(thin, number)["A"] for number in (frame, frame + 1)]
-            mixed = render({**thin, "sequence": {"blend": True}}, frame, **half)["A"]
-            self.assertLess(rms(mixed, [(a + b) / 2 for a, b in zip(*ends)]), 0.05 * rms(*ends), frame)
+            ends = [render(thin, number) for number in (frame, frame + 1)]
+            mixed = render({**thin, "sequence": {"blend": True}}, frame, **half)
+            for layer in ("A", "emission.R"):
+                a, b = (end[layer] for end in ends)
+                self.assertLess(rms(mixed[layer], [(x + y) / 2 for x, y in zip(a, b)]), 0.05 * rms(a, b), (frame, layer))
 
     def test_smoke_without_flames_does_not_glow(self):
         file = self.foreign("wavelet") / "fluid_data_0151.vdb"
