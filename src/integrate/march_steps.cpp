@@ -1,7 +1,7 @@
 #include "integrate/march_steps.h"
 
 #include "scene/light.h"
-#include "scene/light_reach.h"
+#include "scene/lights/light_reach.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"
 #include "volume/rays/fog_reach.h"

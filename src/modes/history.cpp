@@ -1,9 +1,9 @@
 #include "modes/history.h"
 
 #include "integrate/terms.h"
-#include "scene/area_shape.h"
-#include "scene/gobo.h"
-#include "scene/light_filter.h"
+#include "scene/lights/area_shape.h"
+#include "scene/lights/gobo.h"
+#include "scene/lights/light_filter.h"
 #include "trace/snapshot.h"
 
 #include <algorithm>

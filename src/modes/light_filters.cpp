@@ -2,7 +2,7 @@
 
 #include "integrate/single_scattering/single_scattering.h"
 #include "scene/light.h"
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 #include "trace/snapshot.h"
 
 namespace tyndall {

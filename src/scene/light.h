@@ -1,7 +1,7 @@
 // A light at one time, as in KHR_lights_punctual plus soft edges, and the light it sends to a point.
 #pragma once
 #include "base/math.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 
 #include <memory>
 #include <string>
@@ -25,7 +25,7 @@ struct Light {
     float angle = 0;                           // radians, half angle of the sun's disc
     std::shared_ptr<const LightFilter> filter; // point, spot: directional factors on the intensity; null = none
     // Rectangle, disc, sphere: the emitting shape; null = none. All other members then describe the light that
-    // approximates it (make_punctual() in scene/area_shape.h), for callers to which its size does not matter.
+    // approximates it (make_punctual() in scene/lights/area_shape.h), for callers to which its size does not matter.
     std::shared_ptr<const AreaShape> area;
     bool shadows = true;
     int casters = -1, lit = -1; // surfaces that shadow it and that it lights: indices of snapshot sets; -1 = all

@@ -2,9 +2,9 @@
 #pragma once
 #include "base/io/file_sequence.h"
 #include "scene/background_kind.h"
-#include "scene/gobo.h"
 #include "scene/keyed.h"
-#include "scene/light_kind.h"
+#include "scene/lights/gobo.h"
+#include "scene/lights/light_kind.h"
 #include "scene/load_options.h"
 #include "scene/mesh.h"
 #include "scene/phase_source.h"
@@ -250,22 +250,6 @@ bool is_moving(const Scene& scene, int node);
 // Why a medium cannot have this scale; null if it can.
 const char* scale_problem(vec3 scale);
 mat4 medium_matrix(const MediumSource& medium, double seconds); // from the medium's own space to the world
-
-// The first and the last frame whose files a medium uses while a frame's shutter is open.
-std::pair<int, int> frames_shown(const MediumSource& medium, int frame, const Shutter& shutter);
-
-// The files of sequences that a frame reads, volumes first; `path` is empty where a sequence has none. Throws Error for
-// a gap.
-struct FrameFile {
-    bool volume = true; // else a gobo
-    std::optional<std::filesystem::path> path;
-};
-std::vector<FrameFile> frame_files(const Scene& scene, int frame, MissingFrame missing, const Shutter& shutter);
-
-// A gobo's image for a frame; MissingFrame::skip holds the previous image, as hold does.
-std::filesystem::path gobo_file(const GoboSource& gobo, int frame, MissingFrame missing);
-// The file sequences of a medium, of its density and of every other property, without duplicates.
-std::vector<const FileSequence*> volume_sequences(const MediumSource& medium);
 
 // Whether it emits light at any time.
 bool emits_light(const MediumSource& medium);

@@ -1,8 +1,8 @@
 #include "trace/frame_cache.h"
 
 #include "base/io/file.h"
-#include "scene/area_shape.h"
 #include "scene/light.h"
+#include "scene/lights/area_shape.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "scene/camera.h"
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 #include "scene/photometry/ies_profile.h"
 #include "scene/pose.h"
 #include "scene/scene.h"

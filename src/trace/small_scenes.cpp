@@ -1,8 +1,8 @@
 #include "trace/small_scenes.h"
 
 #include "base/image.h"
-#include "scene/gobo.h"
-#include "scene/light_filter.h"
+#include "scene/lights/gobo.h"
+#include "scene/lights/light_filter.h"
 #include "scene/photometry/ies_file.h"
 #include "scene/photometry/ies_profile.h"
 #include "scene/scene.h"

@@ -6,7 +6,7 @@
 #include "modes/light_filters.h"
 #include "modes/path/path_rays.h"
 #include "modes/shared_limitations.h"
-#include "scene/gobo.h"
+#include "scene/lights/gobo.h"
 #include "scene/scene.h"
 #include "support/expect.h"
 #include "support/face_lights.h"

@@ -3,7 +3,7 @@
 
 #include "base/gauss_legendre.h"
 #include "modes/path/path_rays.h"
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 #include "scene/scene.h"
 #include "support/meshes.h"
 #include "support/run_mode.h"

@@ -1,7 +1,7 @@
 // Lights that are faces, made in memory.
 #pragma once
-#include "scene/area_shape.h"
-#include "scene/light_filter.h"
+#include "scene/lights/area_shape.h"
+#include "scene/lights/light_filter.h"
 
 namespace tyndall::test {
 // Of one nit unless said; `size`: width and height, or the radius twice.

@@ -1,5 +1,5 @@
 // What counts as motion across the image: shadows, images of lights, and fog that the camera sees move.
-#include "scene/gobo.h"
+#include "scene/lights/gobo.h"
 #include "scene/scene.h"
 #include "support/meshes.h"
 #include "support/scratch.h"

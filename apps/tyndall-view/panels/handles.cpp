@@ -3,7 +3,7 @@
 #include "../theme.h"
 #include "base/text.h"
 #include "panels.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 #include "scene/scene.h"
 #include "viewer/editing/scene_edit.h"
 #include "viewer/state/edit_actions.h"

@@ -11,8 +11,8 @@
 #include "render/parts/manifest.h"
 #include "render/parts/merge.h"
 #include "render/sequence/auto_exposure.h"
+#include "scene/input_files.h"
 #include "scene/scene.h"
-#include "scene/spared_files.h"
 
 #include <algorithm>
 #include <chrono>

@@ -15,8 +15,8 @@
 #include "render/farm/slurm.h"
 #include "render/parts/part_file.h"
 #include "render/parts/plan_file.h"
+#include "scene/input_files.h"
 #include "scene/scene.h"
-#include "scene/spared_files.h"
 #include "trace/snapshot.h"
 
 #include <algorithm>

@@ -8,8 +8,8 @@
 #include "measure/chart/report.h"
 #include "modes/mode.h"
 #include "rendering/render_options.h"
+#include "scene/input_files.h"
 #include "scene/scene.h"
-#include "scene/spared_files.h"
 #include "trace/moment.h"
 
 #include <algorithm>

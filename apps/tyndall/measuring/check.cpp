@@ -8,6 +8,7 @@
 #include "render/image/exr.h"
 #include "scene/file/scene_file.h"
 #include "scene/gltf/gltf.h"
+#include "scene/input_files.h"
 #include "scene/photometry/ies_file.h"
 #include "trace/fog/grid_file.h"
 #include "trace/lights/enclosed_lights.h"

@@ -17,9 +17,9 @@
 #include "rendering/remarks.h"
 #include "rendering/render_options.h"
 #include "rendering/sheet.h"
+#include "scene/input_files.h"
 #include "scene/light.h"
 #include "scene/scene.h"
-#include "scene/spared_files.h"
 #include "trace/moment.h"
 #include "trace/snapshot.h"
 

@@ -3,8 +3,8 @@
 // function. Combined by multiple importance sampling (balance heuristic).
 #include "integrate/lights/path_lights.h"
 
-#include "scene/area_shape.h"
-#include "scene/light_reach.h"
+#include "scene/lights/area_shape.h"
+#include "scene/lights/light_reach.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 

@@ -2,8 +2,8 @@
 
 #include "base/random.h"
 #include "scene/light.h"
-#include "scene/light_filter.h"
-#include "scene/light_reach.h"
+#include "scene/lights/light_filter.h"
+#include "scene/lights/light_reach.h"
 #include "volume/medium.h"
 
 namespace tyndall {

@@ -3,7 +3,7 @@
 #include "base/random.h"
 #include "integrate/lights/lamps.h"
 #include "integrate/style.h"
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 #include "scene/photometry/ies_file.h"
 #include "scene/photometry/ies_profile.h"
 #include "scene/scene.h"

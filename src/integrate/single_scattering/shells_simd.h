@@ -8,7 +8,7 @@
 #endif
 
 #include "integrate/single_scattering/single_scattering_simd.h"
-#include "scene/light_reach.h"
+#include "scene/lights/light_reach.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

@@ -1,6 +1,6 @@
 #include "integrate/single_scattering/single_scattering.h"
 
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 #include "trace/shadows/cached_shadows.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

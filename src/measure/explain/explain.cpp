@@ -10,7 +10,7 @@
 #include "render/adaptive/candidates.h"
 #include "render/frame/camera_paths.h"
 #include "render/frame/channels.h"
-#include "scene/area_shape.h"
+#include "scene/lights/area_shape.h"
 #include "scene/scene.h"
 #include "trace/mattes.h"
 #include "volume/rays/fog_reach.h"

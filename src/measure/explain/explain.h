@@ -5,7 +5,7 @@
 #pragma once
 #include "base/math.h"
 #include "modes/mode.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 
 #include <atomic>
 #include <functional>

@@ -3,7 +3,7 @@
 #include "volume/medium.h"
 
 #include "integrate/style.h"
-#include "scene/light_reach.h"
+#include "scene/lights/light_reach.h"
 #include "trace/transmittance/light_depth.h"
 #include "volume/rays/fog_pieces.h"
 

@@ -3,7 +3,7 @@
 #include "base/image.h"
 #include "modes/froxel/settings.h"
 #include "render/sequence/job.h"
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 
 namespace tyndall {
 StressMeasure default_measure() { return {0.1, with_bias, error_and_bias, -1, {}, 0.02}; }

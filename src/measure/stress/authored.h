@@ -1,7 +1,7 @@
 // Parts of scenes beyond lamps and fog: flames, area lights, skies, an open shutter. Internal to stress.
 #pragma once
 #include "measure/stress/trial.h"
-#include "scene/area_shape.h"
+#include "scene/lights/area_shape.h"
 #include "scene/scene.h"
 #include "trace/lights/environment.h"
 

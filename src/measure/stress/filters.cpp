@@ -4,7 +4,7 @@
 #include "modes/light_filters.h"
 #include "modes/shadow_map/limitations.h"
 #include "modes/shared_limitations.h"
-#include "scene/gobo.h"
+#include "scene/lights/gobo.h"
 #include "scene/photometry/ies_profile.h"
 
 namespace tyndall {

@@ -10,8 +10,8 @@
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
 #include "modes/history_limitations.h"
-#include "scene/gobo.h"
 #include "scene/light.h"
+#include "scene/lights/gobo.h"
 #include "volume/medium.h"
 
 #include <utility>

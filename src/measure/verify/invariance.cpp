@@ -1,6 +1,6 @@
 // Checks that need no expected value: what must not change when the same fog or scene is described in another way.
 #include "measure/verify/rays.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 #include "scene/mesh.h"
 #include "scene/scene.h"
 #include "volume/bricks/sparse_volume.h"

@@ -9,7 +9,7 @@
 #include "modes/fog_buffer.h"
 #include "modes/history.h"
 #include "modes/mode.h"
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/bricks/bricks.h"

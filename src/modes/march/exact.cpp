@@ -1,7 +1,7 @@
 #include "modes/march/exact.h"
 
 #include "modes/march/exact_steps.h"
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 #include "volume/rays/emission_nodes.h"
 
 #include <utility>

@@ -1,8 +1,8 @@
 // Connections: shadow rays in packets, transmittance of fog by ratio tracking.
 #include "modes/path/connect.h"
 
-#include "scene/area_shape.h"
 #include "scene/light.h"
+#include "scene/lights/area_shape.h"
 #include "trace/lights/environment.h"
 #include "trace/lights/light_ray.h"
 #include "trace/occlusion/occluders.h"

@@ -1,6 +1,6 @@
 #include "modes/path/faces.h"
 
-#include "scene/area_shape.h"
+#include "scene/lights/area_shape.h"
 
 namespace tyndall {
 namespace {

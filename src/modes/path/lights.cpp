@@ -1,10 +1,10 @@
 // Sampling of lights, and of distances along lines.
 #include "modes/path/lights.h"
 
-#include "scene/area_shape.h"
 #include "scene/light.h"
-#include "scene/light_filter.h"
-#include "scene/light_reach.h"
+#include "scene/lights/area_shape.h"
+#include "scene/lights/light_filter.h"
+#include "scene/lights/light_reach.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"

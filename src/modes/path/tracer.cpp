@@ -3,7 +3,7 @@
 
 #include "modes/path/emission.h"
 #include "modes/path/faces.h"
-#include "scene/area_shape.h"
+#include "scene/lights/area_shape.h"
 #include "trace/lights/faces.h"
 #include "trace/mattes.h"
 #include "trace/surface.h"

@@ -10,7 +10,7 @@
 #include "integrate/equi_angular_simd.h"
 #include "modes/shadow_map/packet_simd.h"
 #include "modes/shadow_map/settings.h"
-#include "scene/light_reach.h"
+#include "scene/lights/light_reach.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace tyndall::HWY_NAMESPACE {

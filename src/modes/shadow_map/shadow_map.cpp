@@ -11,7 +11,7 @@
 #include "modes/shadow_map/kernel.h"
 #include "modes/shadow_map/limitations.h"
 #include "modes/shadow_map/settings.h"
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 #include "scene/scene.h"
 #include "volume/medium.h"
 

@@ -2,6 +2,7 @@
 
 #include "base/io/file_hashes.h"
 #include "render/sequence/job.h"
+#include "scene/input_files.h"
 #include "scene/scene.h"
 
 #include <set>

@@ -2,7 +2,7 @@
 #include "render/frame/camera_paths.h"
 
 #include "base/random.h"
-#include "scene/area_shape.h"
+#include "scene/lights/area_shape.h"
 #include "trace/lights/faces.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

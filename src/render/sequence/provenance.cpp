@@ -12,6 +12,7 @@
 #include "render/frame/layers.h"
 #include "render/sequence/job.h"
 #include "scene/camera.h"
+#include "scene/input_files.h"
 #include "scene/scene.h"
 #include "trace/moment.h"
 

@@ -1,6 +1,6 @@
 // Dispatches calls on a light to the functions of its kind.
-#include "scene/light_reach.h"
 #include "scene/lights/functions.h"
+#include "scene/lights/light_reach.h"
 
 namespace tyndall {
 namespace {

@@ -1,7 +1,7 @@
 // Point lights and spots as in KHR_lights_punctual; spherical lights if they have a radius.
-#include "scene/light_filter.h"
-#include "scene/light_reach.h"
 #include "scene/lights/functions.h"
+#include "scene/lights/light_filter.h"
+#include "scene/lights/light_reach.h"
 
 namespace tyndall {
 namespace {

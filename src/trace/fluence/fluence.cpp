@@ -2,10 +2,10 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "scene/area_shape.h"
-#include "scene/gobo.h"
 #include "scene/light.h"
-#include "scene/light_filter.h"
+#include "scene/lights/area_shape.h"
+#include "scene/lights/gobo.h"
+#include "scene/lights/light_filter.h"
 #include "scene/photometry/ies_profile.h"
 #include "trace/fluence/light_paths.h"
 #include "trace/fluence/settings.h"

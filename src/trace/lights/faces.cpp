@@ -1,6 +1,6 @@
 #include "trace/lights/faces.h"
 
-#include "scene/area_shape.h"
+#include "scene/lights/area_shape.h"
 #include "trace/lights/surface_rays.h"
 #include "trace/snapshot.h"
 #include "volume/medium.h"

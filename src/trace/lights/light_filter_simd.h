@@ -9,8 +9,8 @@
 #include "base/simd/angles_simd.h"
 #include "base/simd/gather_simd.h"
 #include "base/simd/simd.h"
-#include "scene/gobo.h"
-#include "scene/light_filter.h"
+#include "scene/lights/gobo.h"
+#include "scene/lights/light_filter.h"
 #include "scene/photometry/ies_profile.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,4 +1,5 @@
 #include "viewer/editing/input_times.h"
+#include "scene/input_files.h"
 #include "scene/scene.h"
 
 namespace tyndall {

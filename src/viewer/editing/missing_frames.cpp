@@ -1,4 +1,5 @@
 #include "viewer/editing/missing_frames.h"
+#include "scene/input_files.h"
 #include "scene/scene.h"
 
 #include <filesystem>

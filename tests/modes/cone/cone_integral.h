@@ -3,7 +3,7 @@
 #pragma once
 #include "modes/settings.h"
 #include "scene/light.h"
-#include "scene/light_reach.h"
+#include "scene/lights/light_reach.h"
 #include "volume/medium.h"
 
 #include <functional>

@@ -8,7 +8,7 @@
 #include "modes/froxel/beams/beam_shadows.h"
 #include "modes/froxel/limitations.h"
 #include "modes/history.h"
-#include "scene/light_reach.h"
+#include "scene/lights/light_reach.h"
 #include "trace/lights/light_ray.h"
 #include "trace/shadows/cached_shadows.h"
 #include "volume/phase.h"

@@ -2,7 +2,7 @@
 #include "base/random.h"
 #include "modes/path/path_rays.h"
 #include "scene/light.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 #include "scene/scene.h"
 #include "support/run_mode.h"
 #include "support/tiny_scenes.h"

@@ -4,7 +4,7 @@
 #include "render/frame/frame.h"
 #include "scene/camera.h"
 #include "scene/light.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 #include "scene/scene.h"
 #include "support/expect.h"
 #include "support/threads.h"

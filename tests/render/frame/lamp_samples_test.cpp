@@ -6,7 +6,7 @@
 #include "render/frame/frame.h"
 #include "render/frame/layers.h"
 #include "scene/light.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 #include "scene/scene.h"
 #include "trace/small_scenes.h"
 #include "trace/snapshot.h"

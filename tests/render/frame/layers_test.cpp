@@ -4,7 +4,7 @@
 #include "render/frame/noise_fixtures.h"
 #include "render/frame/pixel_sum.h"
 #include "scene/light.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 #include "scene/scene.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"

@@ -1,7 +1,7 @@
 #include "modes/mode.h"
 #include "render/frame/noise_fixtures.h"
 #include "scene/light.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 #include "scene/scene.h"
 #include "support/threads.h"
 #include "trace/occlusion/occluders.h"

@@ -2,6 +2,7 @@
 #include "modes/mode.h"
 #include "render/frame/frame.h"
 #include "render/sequence/job.h"
+#include "scene/input_files.h"
 #include "scene/scene.h"
 #include "support/expect.h"
 #include "support/limitations.h"

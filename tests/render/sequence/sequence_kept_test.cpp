@@ -5,7 +5,7 @@
 #include "render/fixtures.h"
 #include "render/sequence/sequence.h"
 #include "scene/light.h"
-#include "scene/light_kind.h"
+#include "scene/lights/light_kind.h"
 #include "scene/scene.h"
 #include "support/meshes.h"
 #include "support/scratch.h"

@@ -1,5 +1,6 @@
 // What a medium takes from grids beside its density: read as it is written, or refused by field.
 #include "scene/file/medium_words.h"
+#include "scene/input_files.h"
 #include "support/expect.h"
 #include "support/load_answer.h"
 #include "support/scratch.h"

@@ -1,6 +1,6 @@
 // Rectangles, discs and spheres of scene files.
 #include "base/error.h"
-#include "scene/area_shape.h"
+#include "scene/lights/area_shape.h"
 #include "scene/scene.h"
 #include "support/expect.h"
 #include "trace/snapshot.h"

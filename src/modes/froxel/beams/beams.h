@@ -6,7 +6,7 @@
 #include "integrate/lobe_cuts.h"
 #include "modes/froxel/grid.h"
 #include "scene/light.h"
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 #include "trace/transmittance/light_depth.h"
 
 #include <algorithm>

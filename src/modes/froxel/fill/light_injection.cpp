@@ -3,7 +3,7 @@
 #include "base/gauss_legendre.h"
 #include "base/random.h"
 #include "integrate/lights/light_along.h"
-#include "scene/light_reach.h"
+#include "scene/lights/light_reach.h"
 
 #include <array>
 

@@ -1,6 +1,6 @@
 // Shadow volumes sorted into tiles of the picture.
 #include "scene/light.h"
-#include "scene/light_reach.h"
+#include "scene/lights/light_reach.h"
 #include "trace/shadows/volumes/shadow_stage.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "scene/gobo.h"
+#include "scene/lights/gobo.h"
 
 #include "base/io/file.h"
 #include "scene/images/image_file.h"

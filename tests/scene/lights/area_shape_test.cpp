@@ -1,8 +1,8 @@
 // Faces that glow: points picked on them against closed forms and published view factors.
 #include "base/image.h"
 #include "base/random.h"
-#include "scene/area_shape.h"
-#include "scene/gobo.h"
+#include "scene/lights/area_shape.h"
+#include "scene/lights/gobo.h"
 #include "support/expect.h"
 #include "support/face_lights.h"
 

@@ -1,8 +1,8 @@
 // Gobos: which way they stand, what is outside, and how large ones are reduced.
-#include "scene/gobo.h"
 #include "scene/images.h"
 #include "scene/images/image_file.h"
-#include "scene/light_filter.h"
+#include "scene/lights/gobo.h"
+#include "scene/lights/light_filter.h"
 #include "support/expect.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "scene/light_reach.h"
+#include "scene/lights/light_reach.h"
 
 #include "base/random.h"
 

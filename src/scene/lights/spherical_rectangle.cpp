@@ -1,4 +1,4 @@
-#include "scene/spherical_rectangle.h"
+#include "scene/lights/spherical_rectangle.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,7 +13,7 @@ struct LightTraits {
     bool distant = false;        // parallel light from infinity: no position, no falloff
     bool aimed = false;          // shines in a direction
     bool cone = false;           // limited by inner_cone and outer_cone
-    bool area = false;           // emits from a surface: scene/area_shape.h
+    bool area = false;           // emits from a surface: scene/lights/area_shape.h
 };
 inline constexpr LightTraits light_kinds[] = {
     {.name = "point", .noun = "point light", .unit = "candela"},

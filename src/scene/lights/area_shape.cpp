@@ -1,10 +1,10 @@
-#include "scene/area_shape.h"
+#include "scene/lights/area_shape.h"
 
-#include "scene/gobo.h"
-#include "scene/light_filter.h"
+#include "scene/lights/gobo.h"
+#include "scene/lights/light_filter.h"
+#include "scene/lights/spherical_rectangle.h"
 #include "scene/photometry/ies_file.h"
 #include "scene/photometry/ies_profile.h"
-#include "scene/spherical_rectangle.h"
 
 namespace tyndall {
 namespace {

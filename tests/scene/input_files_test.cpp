@@ -1,5 +1,5 @@
 // A scene's own files are no outputs, nor is any number of its sequences.
-#include "scene/spared_files.h"
+#include "scene/input_files.h"
 
 #include "scene/scene.h"
 #include "support/expect.h"
@@ -12,7 +12,7 @@ namespace tyndall {
 namespace {
 using ::testing::HasSubstr;
 
-TEST(SparedFiles, NumberedInputsAreNotOverwritten) {
+TEST(InputFiles, NumberedInputsAreNotOverwritten) {
     const TempFolder scratch;
     for (const char* name : {"gobo.0001.exr", "gobo.0007.exr", "fog.0002.vdb", "hot.0003.vdb"}) scratch.put(name, "");
     Scene scene;

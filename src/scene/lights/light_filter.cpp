@@ -1,7 +1,7 @@
-#include "scene/light_filter.h"
+#include "scene/lights/light_filter.h"
 
-#include "scene/gobo.h"
 #include "scene/light.h"
+#include "scene/lights/gobo.h"
 #include "scene/photometry/ies_profile.h"
 
 #include <algorithm>
