@@ -1,4 +1,4 @@
-// Fog whose light and colors come from grids, written to files of a test's own folder.
+// Fog whose light and colors come from grids, written to files of a test's own folder, and its light along a ray.
 #pragma once
 #include "scene/scene.h"
 #include "support/scratch.h"
@@ -22,4 +22,11 @@ MediumSource grid_source(const TempFolder& scratch, const std::string& name, con
 GridSource property(const TempFolder& scratch, const std::string& name, const SparseVolume& volume);
 
 Snapshot snapshot_with(Scene& scene, const MediumSource& medium);
+
+// Within a share of the red.
+void expect_light(vec3 found, dvec3 expected, double share, const std::string& what);
+
+// Of the light along a ray, in every way that looks at it point by point.
+void expect_along(const Snapshot& snapshot, const Ray& ray, dvec3 expected, const std::string& what,
+                  double share = 1e-3);
 }

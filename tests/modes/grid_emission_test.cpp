@@ -40,22 +40,6 @@ MediumSource glowing(const TempFolder& scratch, BlackbodyKind kind, float extinc
     return source;
 }
 
-void expect_light(vec3 found, dvec3 expected, double share, const std::string& what) {
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], share * expected.x) << what << ", channel " << c;
-}
-
-// In every way that looks at it point by point.
-void expect_along(const Snapshot& snapshot, const Ray& ray, dvec3 expected, const std::string& what) {
-    expect_light(marched(snapshot, settings_for(Quality::preview), ray).radiance, expected, 1e-3, what + ", march");
-    expect_light(marched(snapshot, exact_settings(), ray).radiance, expected, 1e-3, what + ", exact march");
-    Settings rays = settings_for(Quality::final);
-    rays.march.visibility = Visibility::rays;
-    expect_light(marched(snapshot, rays, ray).radiance, expected, 2e-3, what + ", march by rays");
-    const RayEstimate traced = test::traced(snapshot, ray, 64, 0);
-    for (int c = 0; c < 3; ++c)
-        EXPECT_NEAR(traced.value[c], expected[c], sigmas * traced.error[c] + 1e-3 * expected.x) << what << ", path";
-}
-
 TEST(GridEmission, BoxInVacuumIsEmissionTimesLength) {
     const TempFolder scratch;
     for (const BlackbodyKind kind : {BlackbodyKind::kelvin, BlackbodyKind::cycles}) {
