@@ -104,12 +104,14 @@ TEST(VolumeMotion, ConstantVelocityBlursToATrapezoid) {
     write_cube(moving.scratch.file("fog.vdb"), vec3(0), {0.4f, 0, 0});
     moving.move();
     moving.request.time_samples = 64;
-    const Layers layers = moving.rendered();
     const float full = 1 - std::exp(-4 * 0.5f);
-    for (int x = 0; x < 64; ++x) {
-        // Voxels lie at corners of pixels, half of one to the left of their middles.
-        const float at = (static_cast<float>(x) + 1) / 32 - 1;
-        EXPECT_NEAR(layers.alpha.at(x, 32), full * covered(at, 0.4f), 0.06f) << x;
+    for (const char* mode : {"march", "path"}) {
+        const Layers layers = moving.rendered(mode);
+        for (int x = 0; x < 64; ++x) {
+            // Voxels lie at corners of pixels, half of one to the left of their middles.
+            const float at = (static_cast<float>(x) + 1) / 32 - 1;
+            EXPECT_NEAR(layers.alpha.at(x, 32), full * covered(at, 0.4f), 0.06f) << mode << " " << x;
+        }
     }
 }
 
