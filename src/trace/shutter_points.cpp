@@ -11,6 +11,7 @@
 #include "volume/vdb/vdb.h"
 
 #include <algorithm>
+#include <array>
 
 namespace tyndall {
 namespace {
@@ -105,15 +106,24 @@ bool changes_height(const MediumSource& medium) {
     return medium.kind == MediumKind::height && !(medium.height_base.constant() && medium.height_falloff.constant());
 }
 
+// The velocities of a recipe's noise: of its fog and of its flames. What swirls and evolves goes nowhere.
+std::array<vec3, 2> velocities_of(const FogRecipe& recipe) {
+    return {recipe.wind, vec3(0, recipe.fire ? recipe.fire->rise : 0, 0)};
+}
+
 void add_medium(const ShutterPoints& all, size_t index, double seconds, Points& points) {
     const MediumSource& medium = all.scene.media[index];
     const mat4 matrix = medium_matrix(medium, seconds);
     points.push_back(vec3(matrix[3]));
     add_corners(matrix, all.media[index], points);
+    const auto passed = static_cast<float>(seconds - all.middle);
+    for (const vec3 place : all.noise[index])
+        for (const vec3 velocity : velocities_of(*medium.recipe))
+            points.push_back(vec3(matrix * vec4(place + passed * velocity, 1)));
     if (!changes_height(medium)) return;
     const float base = medium.height_base.at(seconds), falloff = medium.height_falloff.at(seconds);
-    for (const vec2 column : all.columns)
-        for (const float height : {base, base + falloff}) points.push_back({column.x, height, column.y});
+    for (const vec3 place : all.view)
+        for (const float height : {base, base + falloff}) points.push_back({place.x, height, place.z});
 }
 
 Box bounds_of(const MediumSource& medium, int frame) {
@@ -134,25 +144,37 @@ float extent_of(const Scene& scene, double seconds) {
 }
 
 // Places at several distances behind nine points of the image.
-std::vector<vec2> columns_in_view(const Camera& camera, ivec2 size, float extent) {
-    std::vector<vec2> columns;
+Points places_in_view(const Camera& camera, ivec2 size, float extent) {
+    Points places;
     for (int i = 0; i < 9; ++i) {
         const Ray ray = camera_ray(camera, size, vec2(size) * vec2(i % 3, i / 3) / 2.0f);
-        for (const float share : {0.125f, 0.25f, 0.5f, 1.0f}) {
-            const vec3 at = ray.at(share * extent);
-            columns.push_back({at.x, at.z});
-        }
+        for (const float share : {0.125f, 0.25f, 0.5f, 1.0f}) places.push_back(ray.at(share * extent));
     }
-    return columns;
+    return places;
+}
+
+// Places in noise that drifts: the corners of its bounds, and what of it is in view.
+Points places_in_noise(const MediumSource& medium, const Points& view, double seconds) {
+    Points places;
+    if (!medium.recipe || velocities_of(*medium.recipe) == std::array{vec3(0), vec3(0)}) return places;
+    add_corners(mat4(1), medium.recipe->bounds, places);
+    const mat4 to_medium = glm::inverse(medium_matrix(medium, seconds));
+    for (const vec3 place : view) {
+        const vec3 own(to_medium * vec4(place, 1));
+        if (!clip(medium.recipe->bounds, own, vec3(0), {0, 1}).empty()) places.push_back(own);
+    }
+    return places;
 }
 }
 
 ShutterPoints shutter_points(const Scene& scene, const Camera& camera, ivec2 size, int frame, double seconds) {
-    ShutterPoints points{scene, extent_of(scene, seconds), {}, {}, {}, {}, {}};
+    ShutterPoints points{scene, extent_of(scene, seconds), {}, {}, {}, {}, {}, {}, seconds};
     for (const LightSource& light : scene.lights) points.forward.push_back(light_frame(scene, light, seconds).forward);
     for (const Mesh& mesh : scene.meshes) points.meshes.push_back(posed_bounds(mesh, {}));
     for (const MediumSource& medium : scene.media) points.media.push_back(bounds_of(medium, frame));
-    if (std::ranges::any_of(scene.media, changes_height)) points.columns = columns_in_view(camera, size, points.extent);
+    points.view = places_in_view(camera, size, points.extent);
+    for (const MediumSource& medium : scene.media)
+        points.noise.push_back(places_in_noise(medium, points.view, seconds));
     points.shadows = shadow_rays(scene, seconds, points.extent);
     return points;
 }
@@ -163,6 +185,7 @@ std::vector<vec3> points_at(const ShutterPoints& all, double seconds) {
     for (const Instance& instance : all.scene.instances) add_instance(all, instance, seconds, points);
     for (size_t i = 0; i < all.scene.media.size(); ++i) add_medium(all, i, seconds, points);
     add_shadows(all.scene, all.shadows, seconds, all.extent, points);
+    points.insert(points.end(), all.view.begin(), all.view.end()); // only a camera moves them
     return points;
 }
 }

@@ -144,5 +144,52 @@ TEST(ShutterPoints, FogRises) {
     fog.height_base = 0.0f, fog.height_falloff = from_to(0.5f, 0.2f);
     EXPECT_NEAR(motion(scene), 0.3f, 1e-3f);
 }
+
+TEST(ShutterPoints, NoiseDriftsWithItsWind) {
+    Scene scene = seen_from_the_front();
+    MediumSource& fog = scene.media[0];
+    fog.kind = MediumKind::noise, fog.recipe = FogRecipe{};
+    fog.recipe->noise.evolve = 2;
+    EXPECT_NEAR(motion(scene), 0, 1e-3f) << "changes in place";
+    fog.recipe->wind = vec3(0, 0, 3);
+    EXPECT_NEAR(motion(scene), 0, 1e-3f) << "towards the camera";
+    fog.recipe->wind = vec3(0.5f, 0, 0);
+    EXPECT_NEAR(motion(scene), 0.5f, 1e-3f);
+    fog.rotation = glm::angleAxis(pi / 2, vec3(0, 1, 0));
+    EXPECT_NEAR(motion(scene), 0, 1e-3f) << "turned towards the camera";
+    fog.recipe->fire = FireRecipe{};
+    fog.recipe->fire->rise = 0.7f;
+    EXPECT_NEAR(motion(scene), 0.7f, 1e-3f) << "flames rise";
+}
+
+// Nothing of the fog's bounds is in view; the wind is that of the fog between.
+TEST(ShutterPoints, WindIsFeltFromWithin) {
+    Scene scene = seen_from_the_front();
+    MediumSource& fog = scene.media[0];
+    fog.kind = MediumKind::noise, fog.recipe = FogRecipe{};
+    fog.recipe->bounds = {vec3(-50), vec3(50)}, fog.recipe->wind = vec3(0.5f, 0, 0);
+    EXPECT_NEAR(motion(scene), 0.5f, 1e-3f);
+}
+
+// The corners of the only mesh are far beyond the edges of the image.
+TEST(ShutterPoints, ACameraPassesWhatItIsAmong) {
+    Scene scene = seen_from_the_front();
+    scene.media[0].bounds = {vec3(-50, -50, -2), vec3(50, 50, 2)};
+    CameraSource& camera = scene.cameras[0];
+    camera.position = from_to(vec3(-0.3f, 0, 5), vec3(0.3f, 0, 5)),
+    camera.target = from_to(vec3(-0.3f, 0, 0), vec3(0.3f, 0, 0));
+    EXPECT_NEAR(motion(scene), 0.6f, 1e-3f);
+}
+
+// In a square image of 90 degrees, what a corner of one of 71.6 degrees shows is at 0.72 of the way to the corner;
+// at 53.1 degrees it is at 1.44.
+TEST(ShutterPoints, ACameraZoomsIntoWhatItIsAmong) {
+    Scene scene = seen_from_the_front();
+    scene.media[0].bounds = {vec3(-50, -50, -2), vec3(50, 50, 2)};
+    CameraSource& camera = scene.cameras[0];
+    camera.ortho_height = 0, camera.vertical_fov = from_to(pi / 2, 2 * std::atan(0.5f));
+    const float middle = std::tan(pi / 8 + std::atan(0.5f) / 2);
+    EXPECT_NEAR(motion(scene), 2 * std::sqrt(2.0f) * middle * (1 / 0.5f - 1), 1e-2f);
+}
 }
 }

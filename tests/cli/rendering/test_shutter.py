@@ -131,11 +131,11 @@ class ShutterTest(ProgramTest):
         self.succeed("compare", self.path("a.exr"), self.path("truth.exr"), "--fail-above", "rmse_rel=0.1")
 
     def test_moments_are_added_for_an_error(self):
-        """Wind that blows fog by many of its features: how far these go in the image is not known beforehand."""
-        self.write("gale.json", {"bounds": {"low": [-1, 0, -1], "high": [1, 1, 1]}, "voxel_size": 0.1, "wind": [80, 0, 0],
-                                 "noise": {"octaves": 1, "scale": 0.4}, "density": {"threshold": 0.5, "gain": 8}})
+        """Fog that changes many times without going anywhere: how much that matters is not known beforehand."""
+        self.write("boiling.json", {"bounds": {"low": [-1, 0, -1], "high": [1, 1, 1]}, "voxel_size": 0.1,
+                                    "noise": {"octaves": 1, "scale": 0.4, "evolve": 100}, "density": {"threshold": 0.5, "gain": 8}})
         scene = self.scene(shutter=HALF_FRAME, lights=LAMPS[1:], resolution=[32, 18],
-                           media=[{"type": "noise", "recipe": "gale.json", "extinction": 8}])
+                           media=[{"type": "noise", "recipe": "boiling.json", "extinction": 8}])
         asked = ["render", scene, "-o", self.path("a.exr"), "--frames", "3", "--target-error", 0.1, "--stats-json",
                  self.path("stats.json")]
 
