@@ -21,8 +21,11 @@ def write_scene(drawn, size, folder, program):
             medium["recipe"] = recipe.name
             if medium["type"] == "vdb":
                 del medium["recipe"]
-                medium["file"] = f"fog{i + 1}.vdb"
-                subprocess.run([program, "bake", recipe, "-o", folder / medium["file"], "--frames", "1", "-q"], check=True)
+                sequence = "sequence" in medium
+                medium["file"] = f"fog{i + 1}.####.vdb" if sequence else f"fog{i + 1}.vdb"
+                more = ["--velocity"] if "velocity" in medium.get("grids", {}) else []
+                subprocess.run([program, "bake", recipe, "-o", folder / medium["file"], "--frames", "1-3" if sequence else "1",
+                                "-q", *more], check=True)
         document["media"].append(medium)
     if drawn.background:
         document["background"] = drawn.background
