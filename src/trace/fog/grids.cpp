@@ -130,6 +130,12 @@ void append_part(const EmissionPart& part, const std::string& name, vec3 scale, 
 }
 }
 
+bool has_grids(const MediumSource& source) {
+    const bool has_temperature = source.temperature || (source.recipe && source.recipe->fire);
+    return source.albedo_grid || source.emission_grid || (source.blackbody && has_temperature);
+}
+
+namespace {
 // The grids of `before` (may be null) that its light in a frame comes from; null if it has none.
 const MediumGrids* light_before(const MediumGrids* before, int frame) {
     if (!before || before->blended.empty()) return before;
@@ -137,12 +143,6 @@ const MediumGrids* light_before(const MediumGrids* before, int frame) {
     return found == before->blended.end() ? nullptr : found->grids.get();
 }
 
-bool has_grids(const MediumSource& source) {
-    const bool has_temperature = source.temperature || (source.recipe && source.recipe->fire);
-    return source.albedo_grid || source.emission_grid || (source.blackbody && has_temperature);
-}
-
-namespace {
 void read_light(const MediumSource& source, const ReadContext& reading, const MediumGrids* before, MediumGrids& grids) {
     const auto known = [&](GridProperty MediumGrids::*property) { return before ? &(before->*property) : nullptr; };
     grids.emission = grid_property(source.emission_grid, 1, Quantity::color, reading, known(&MediumGrids::emission));
