@@ -50,6 +50,7 @@ struct View {
     Jitter jitter = Jitter::interleaved;
     int lamp_samples = 1;       // largest factor on the sample count around a lamp
     int edge_samples = 1;       // largest factor on the sample count where the image changes from pixel to pixel
+    bool sparse = false;        // whether one pixel of each 2×2 is traced and stands for all four
     bool surface_parts = false; // whether light of surfaces and of the background is output separately
     bool fog_parts = false;     // whether light of the fog is output separately by source
     bool background = true;     // whether the background is in the image ...

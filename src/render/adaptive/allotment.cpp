@@ -50,13 +50,15 @@ Tiles empty_tiles(const Layers& layers) {
 // Variances of one sample: the larger of color's and inscatter's, each relative to the layer's squared mean.
 Tiles relative_variances(const Layers& layers, const Image<float>& taken, double power) {
     const double color = square_of_mean(layers.color), fog = square_of_mean(layers.inscatter);
+    std::vector<double> times(taken.pixels.size()); // the variance of the means of the samples taken
+    for (size_t i = 0; i < times.size(); ++i) times[i] = std::pow(double{taken.pixels[i]}, power);
     Tiles tiles = empty_tiles(layers);
     for (int y = 0; y < layers.size.y; ++y)
         for (int x = 0; x < layers.size.x; ++x) {
             const size_t i = tiles.index((layers.low + ivec2(x, y)) / tile_side - tiles.low);
             const double a = color > 0 ? channel_mean(layers.variance.at(x, y)) / color : 0;
             const double b = fog > 0 ? channel_mean(layers.inscatter_variance.at(x, y)) / fog : 0;
-            const double variance = std::max(a, b) * std::pow(double{taken.pixels[i]}, power);
+            const double variance = std::max(a, b) * times[i];
             tiles.variance[i] += variance, tiles.squares[i] += variance * variance, tiles.pixels[i] += 1;
             tiles.work[i] += layers.work.empty() ? 1 : layers.work.at(x, y);
         }
@@ -96,7 +98,6 @@ struct Sources {
     std::vector<double> pixels;
     double pixel_count = 0, power = 1;
 
-    double variance(size_t i, double samples) const { return variances[i] / std::pow(samples, power); }
     // Sum of the squared variances of a tile's pixels.
     double squares(size_t i, double variance) const { return pixels[i] * uneven[i] * variance * variance; }
 };
@@ -116,17 +117,18 @@ Sources sources_of(const Tiles& tiles, double power) {
 // each is weighted by what it contributes to mean + z × standard deviation of the squared error.
 std::vector<double> shares_of_samples(const Sources& sources) {
     constexpr double deviations = noise_deviations * 1.41421356; // a sum of squared normals has the variance 2 Σ v²
-    std::vector<double> shares(sources.variances.size()), weights = sources.variances;
+    std::vector<double> shares(sources.variances.size()), variances = shares, weights = sources.variances;
     for (int pass = 0; pass < 12; ++pass) {
         double squares = 0;
         for (size_t i = 0; i < shares.size(); ++i) {
-            shares[i] = std::pow(weights[i] / std::max(sources.costs[i], 1e-6), 1 / (1 + sources.power));
-            if (shares[i] > 0) squares += sources.squares(i, sources.variance(i, shares[i]));
+            const double gain = weights[i] / std::max(sources.costs[i], 1e-6);
+            shares[i] = std::pow(gain, 1 / (1 + sources.power));
+            variances[i] = gain > 0 ? sources.variances[i] * shares[i] / gain : 0; // gain = share^(1 + power)
+            squares += sources.squares(i, variances[i]);
         }
-        for (size_t i = 0; i < shares.size(); ++i)
-            if (shares[i] > 0)
-                weights[i] = sources.variances[i] *
-                             (1 + deviations * sources.uneven[i] * sources.variance(i, shares[i]) / std::sqrt(squares));
+        for (size_t i = 0; squares > 0 && i < shares.size(); ++i)
+            weights[i] =
+                sources.variances[i] * (1 + deviations * sources.uneven[i] * variances[i] / std::sqrt(squares));
     }
     return shares;
 }
@@ -147,14 +149,18 @@ Allotment allot(const Layers& layers, const Image<float>& taken, const AllotLimi
     const Sources sources = sources_of(relative_variances(layers, taken, power), power);
     const std::vector<double> shares = shares_of_samples(sources);
     const double bright = std::min(bright_pixels(layers.color), bright_pixels(layers.inscatter));
+    std::vector<double> powers(shares.size());
+    for (size_t i = 0; i < shares.size(); ++i) powers[i] = std::pow(shares[i], power);
+    const double most = max_tile_samples, of_least = std::pow(least, power), of_most = std::pow(most, power);
     const auto at = [&](double scale) {
         Allotment result{layers.low / tile_side, Image<float>(tile_count(layers))};
+        const double of_scale = std::pow(scale, power);
         double sum = 0, squares = 0;
         for (size_t i = 0; i < shares.size(); ++i) {
-            const double samples = std::clamp(scale * shares[i], 1.0 * least, 1.0 * max_tile_samples);
+            const double samples = std::clamp(scale * shares[i], 1.0 * least, most);
             result.samples.pixels[i] = static_cast<float>(samples);
             result.rays += sources.pixels[i] * sources.costs[i] * samples;
-            const double variance = sources.variance(i, samples);
+            const double variance = sources.variances[i] / std::clamp(of_scale * powers[i], of_least, of_most);
             sum += sources.pixels[i] * variance, squares += sources.squares(i, variance);
         }
         result.squared_error = sum / sources.pixel_count;

@@ -27,7 +27,7 @@ double Chooser::work_ahead(const Scout& scout) const {
     if (!(goal.error > 0)) return infinity;
     const AllotLimits limits{goal.error * goal.error, infinity};
     const double rays = allot(scout.layers, scout_samples, limits, 1, scout_samples).rays;
-    return scout.work() * std::max(rays / static_cast<double>(scout.stats.camera_rays), 1.0);
+    return scout.ray_cost() * rays;
 }
 
 PilotRun Chooser::start_run(const Candidate& candidate, const Scout* scout) const {
@@ -44,7 +44,7 @@ Choice Chooser::choice(const Candidate& candidate, PilotRun& run, std::shared_pt
     choice.scout = scout, choice.power = before ? before->power : 1, choice.pace = before ? before->pace : 1;
     choice.is_truth = mode.name == main_mode().name && same_settings(candidate.settings, truth);
     if (choice.is_truth) choice.measured.integrator = {};
-    if (scouted) choice.pace = scout->seconds / scout_samples / std::max(choice.measured.sample_seconds, 1e-9);
+    if (scouted) choice.pace = scout->sample_seconds / std::max(choice.measured.sample_seconds, 1e-9);
     choice.measured.sample_seconds *= choice.pace;
     if (systematic && !before)
         choice.power = variance_power(*pilot, mode, candidate.settings, *choice.measured.prepared);

@@ -161,7 +161,7 @@ void send_scout(Contender& contender, double best_seconds, double left, const Vi
         make_scout(*contender.mode, view, snapshot, choice.candidate, options, goal.clock, choice.measured.prepared);
     const double noise = noise_of(own->layers).error, main_noise = noise_of(choice.scout->layers).error;
     if (noise > 0 && main_noise > 0) choice.noise_ratio = std::pow(noise / main_noise, 2);
-    choice.measured.sample_seconds = own->seconds / scout_samples;
+    choice.measured.sample_seconds = own->sample_seconds;
     predict(contender, goal);
 }
 }
@@ -188,7 +188,7 @@ Contest hold_contest(std::span<const Mode> modes, const View& view, const Snapsh
     first.measured.prepared = nullptr;
     const bool brief = share < brief_share && main.reaches_goal() && modes.size() > 1;
     if (brief && main.choice.scout && main.choice.scout->candidate.name == main.choice.candidate.name)
-        main.done = main.choice.scout->prepare_seconds + main.choice.scout->seconds;
+        main.done = main.choice.scout->prepare_seconds;
     const double main_seconds = main.seconds_ahead(), begun = goal.clock();
     const double known = std::min(main_seconds, longest_relied_on * (begun - start));
     const double allowed = share * (goal.seconds > 0 ? goal.seconds : known);

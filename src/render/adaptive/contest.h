@@ -9,7 +9,7 @@ struct Contender {
     Choice choice;
     double samples = 0; // per pixel, to reach the target error; infinite = out of reach
     double seconds = 0; // to prepare and render that image
-    double done = 0;    // of these: what is prepared, and a scout that counts towards the image
+    double done = 0;    // of these: what is prepared
     double risk = 0;    // expected extra seconds for the main mode's image, in case this one misses the target error
     double error = 0;   // predicted; if the target error is out of reach, the lowest possible
 

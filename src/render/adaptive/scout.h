@@ -1,5 +1,5 @@
-// A quick, coarse first image: it shows where noise and light are, to draw tiles and allot samples. It counts towards
-// the result if the candidate it was rendered with is the one chosen.
+// A quick, coarse first image of a quarter of the pixels: it shows where noise and light are, to draw tiles and allot
+// samples. It is then discarded.
 #pragma once
 #include "render/adaptive/candidates.h"
 #include "render/adaptive/pilot.h"
@@ -9,13 +9,14 @@ inline constexpr int scout_samples = 2; // per pixel, independent of each other
 
 struct Scout {
     Candidate candidate;
-    uint32_t seed = 0;
-    Layers layers;
+    Layers layers; // each traced pixel stands for four
     FrameStats stats;
     std::shared_ptr<const Prepared> prepared;
-    double prepare_seconds = 0, seconds = 0; // the latter without preparation
+    double prepare_seconds = 0, sample_seconds = 0; // the latter per sample of all the image's pixels
 
-    double work() const { return ray_work * static_cast<double>(stats.camera_rays) + static_cast<double>(stats.steps); }
+    double ray_cost() const {
+        return ray_work + static_cast<double>(stats.steps) / static_cast<double>(stats.camera_rays);
+    }
 };
 
 // `prepared`: for that candidate, if it exists already.

@@ -11,6 +11,8 @@ namespace {
 // variance than others, which show by then.
 constexpr double max_first_samples = 64;
 constexpr double early_share = 0.2; // of an image, for the first round of one that is checked early
+// Times an image like the scout, but of all pixels: an allotment that takes longer pays for one to go by.
+constexpr double many_times = 8;
 
 // Total samples per pixel to reach `target`, given the noise after `samples`: variance falls as 1 / n. A fiftieth more,
 // so that the bound is usually met at the first try.
@@ -85,8 +87,12 @@ bool begin_allotment(TargetRounds& rounds, const Layers& layers, FrameStats& sta
     double growth = 0;
     for (size_t i = 0; i < taken.pixels.size(); ++i)
         growth = std::max(growth, double{allotment.samples.pixels[i]} / taken.pixels[i]);
-    rounds.first_part = rounds.checks_early() ? early_share : rounds.allotment || growth > 16 ? 0.4 : 1;
+    const bool again = rounds.allotment.has_value();
     rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
+    rounds.first_part = rounds.checks_early()    ? early_share
+                        : !again && growth <= 16 ? 1
+                        : rounds.continues()     ? 0.2
+                                                 : 0.4;
     return true;
 }
 
@@ -148,31 +154,25 @@ bool judge(TargetRounds& rounds, const Layers& result, FrameStats& stats) {
     return target > 0 && (hopeless ? stats.noise->bound <= rounds.noise_target() : stats.error()->bound <= target);
 }
 
-double begin_with_scout(TargetRounds& rounds, Layers& result, FrameStats& stats) {
+double begin_with_scout(TargetRounds& rounds, FrameStats& stats) {
     const Choice& choice = *rounds.choice;
-    const Scout& scout = *choice.scout;
-    const bool counts = scout.candidate.name == choice.candidate.name && scout.seed == rounds.view.seed;
     rounds.done = scout_samples, rounds.freedom = scout_samples - 1;
-    if (counts) {
-        rounds.work_seconds = scout.seconds / scout_samples;
-        result = scout.layers, stats.add(scout.stats), stats.samples = scout_samples;
-        if (judge(rounds, result, stats)) return 0;
-    } else {
-        const Noise noise = noise_of(scout.layers);
-        const double ratio = std::sqrt(choice.noise_ratio);
-        stats.noise = Noise{ratio * noise.error, ratio * noise.bound, ratio * noise.settled};
+    const Noise noise = noise_of(choice.scout->layers);
+    const double ratio = std::sqrt(choice.noise_ratio), sample_seconds = rounds.work_seconds;
+    stats.noise = Noise{ratio * noise.error, ratio * noise.bound, ratio * noise.settled};
+    double most = max_first_samples, expected = max_target_samples;
+    if (rounds.goal.error > 0)
+        expected = scout_samples * std::pow(stats.noise->bound / rounds.noise_target(), 2 / rounds.power());
+    if (begin_allotment(rounds, choice.scout->layers, stats)) {
+        most = scout_samples, expected = rounds.allotment->rays / pixel_count(rounds.view);
+        if (expected < many_times * most && rounds.allotment->pixels >= many_pixels) return next_round(rounds, stats);
+        rounds.allotment.reset(), rounds.first_part = 1, rounds.work_seconds = sample_seconds;
     }
-    if (!begin_allotment(rounds, scout.layers, stats) && !counts) {
-        const double batches = rounds.max_batches();
-        double needed = max_target_samples;
-        if (rounds.goal.error > 0)
-            needed = scout_samples * std::pow(stats.noise->bound / rounds.noise_target(), 2 / rounds.power());
-        if (rounds.goal.seconds > 0) needed = std::min(needed, rounds.left() / rounds.work_seconds);
-        rounds.done = 0, rounds.freedom = 0, rounds.expected = needed;
-        if (rounds.checks_early()) needed *= early_share;
-        return std::clamp(std::ceil(needed / batches) * batches, batches, max_first_samples);
-    }
-    return next_round(rounds, stats);
+
+    if (rounds.goal.seconds > 0) expected = std::min(expected, rounds.left() / rounds.work_seconds);
+    rounds.done = 0, rounds.freedom = 0, rounds.expected = expected;
+    const double batches = rounds.max_batches(), share = rounds.checks_early() ? early_share : 1;
+    return std::clamp(std::ceil(share * expected / batches) * batches, batches, std::max(most, batches));
 }
 
 double seconds_ahead(const TargetRounds& rounds, double next) {

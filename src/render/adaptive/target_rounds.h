@@ -11,6 +11,9 @@
 namespace tyndall {
 double pixel_count(const View& view); // in the crop window
 
+// Effective number of pixels from which on few samples of each show where noise is, and how much.
+inline constexpr double many_pixels = 256;
+
 // The rounds of one image. Work is counted in samples per pixel; after an allotment, in multiples of it.
 struct TargetRounds {
     const Mode& mode;
@@ -35,7 +38,6 @@ struct TargetRounds {
     // Whether parts of an allotment continue the same two batches, in which noise falls fastest: only if many pixels
     // together show the noise from the difference of two.
     bool continues() const {
-        constexpr double many_pixels = 256;
         return allotment && view.batches == 1 && !is_unbiased(mode) && allotment->pixels >= many_pixels;
     }
     double power() const { return choice ? std::clamp(choice->power, 1.0, 1.5) : 1; }
@@ -74,9 +76,9 @@ bool is_out_of_reach(const Choice& choice, double error);
 // be needed, which shows which pixels need it.
 int first_round(TargetRounds& rounds);
 
-// Begins with the scout, which counts towards the result if it is of the chosen candidate. Returns the next work; 0 if
-// the scout is enough.
-double begin_with_scout(TargetRounds& rounds, Layers& result, FrameStats& stats);
+// Allots samples by what the scout shows, or else predicts how many all pixels need. Returns the work of the first
+// round.
+double begin_with_scout(TargetRounds& rounds, FrameStats& stats);
 
 // Starts over with a new allotment if the rounds so far show that it saves work; returns whether it does.
 bool begin_allotment(TargetRounds& rounds, const Layers& layers, FrameStats& stats);

@@ -175,7 +175,7 @@ double render_rounds(TargetRounds& rounds, const Rendering& rendering, double wo
 // whether it is done.
 bool render_until_check(TargetRounds& rounds, const Rendering& rendering, ImageSoFar& image) {
     const bool scouted = rounds.choice && rounds.choice->scout;
-    const double work = scouted ? begin_with_scout(rounds, image.layers, image.stats) : first_round(rounds);
+    const double work = scouted ? begin_with_scout(rounds, image.stats) : first_round(rounds);
     if (rounds.goal.error > 0 && has_integrator(rendering.mode)) {
         const double ahead = seconds_ahead(rounds, work);
         const bool wait = ahead < infinity && work * rounds.work_seconds < soon && image.stats.forecast_seconds == 0;
@@ -236,7 +236,7 @@ Layers render_to_target(const Mode& mode, const View& view, const Snapshot& snap
     if (has_integrator(mode) || goal.seconds > 0) {
         begin(choice_for(rounds, snapshot, settings, options), rounds, rendering, stats);
         stats.prepare_seconds = goal.clock() - rounds.start;
-        if (rounds.choice->scout) image.rounds = 1; // no round may reuse the scout's random numbers
+        image.rounds = 1; // no round may reuse a scout's random numbers
     }
     const std::optional<Noise> moments = measure_moments(rounds, rendering, stats.wanted_moments);
     if (stats.wanted_moments > 0) {

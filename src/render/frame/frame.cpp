@@ -112,9 +112,11 @@ Layers render_pixels(const Mode& mode, const View& given, const Snapshot& snapsh
     FrameStats probed;
     if (mode.surfaces == Surfaces::shared) view.edges = edge_factors(task, probed);
     const auto render = view.leaves > 0 ? render_grouped_tile : render_tile;
-    stats = for_each_tile(layers, options, [&](const PixelTile& tile, int64_t, FrameStats& block_stats) {
-        render(task, tile, layers, block_stats);
-    });
+    stats = for_each_tile(
+        layers, options,
+        [&](const PixelTile& tile, int64_t, FrameStats& block_stats) { render(task, tile, layers, block_stats); },
+        view.sparse);
+    if (view.sparse) spread_pixels(layers);
     stats.moments = static_cast<int>(std::max<size_t>(task.prepared->moments.size(), 1));
     stats.samples = view.leaves > 0 ? mean_samples(stats.camera_rays, layers) : view.pixel_samples;
     stats.prepare_seconds = prepared - start;

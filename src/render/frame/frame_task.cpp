@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/process.h"
+#include "base/random.h"
 #include "base/text.h"
 #include "modes/mode.h"
 #include "modes/settings.h"
@@ -171,6 +172,25 @@ Blocks blocks_of(ivec2 low, ivec2 size) {
     return {first, (low + size - 1) / block_side - first + 1};
 }
 
+constexpr uint32_t use_sparse = 0x59a5u;
+
+// The pixel of each 2×2 that sparse tiles have: another one in each tile, so that no column or row is always left out.
+ivec2 sparse_pixel(ivec2 corner, const Layers& layers) {
+    const ivec2 tile = corner / tile_side;
+    const uint32_t u = hash(static_cast<uint32_t>(tile.x), static_cast<uint32_t>(tile.y), use_sparse);
+    return glm::clamp(corner + ivec2(u & 1, u >> 1 & 1), layers.low, layers.low + layers.size - 1);
+}
+
+PixelTile sparse_tile_at(ivec2 corner, const Layers& layers) {
+    PixelTile tile{corner, {}, 0};
+    for (int y = corner.y; y < corner.y + 2 * tile_side; y += 2)
+        for (int x = corner.x; x < corner.x + 2 * tile_side; x += 2)
+            if (glm::all(glm::lessThan(ivec2(x, y), layers.low + layers.size)) &&
+                glm::all(glm::greaterThan(ivec2(x, y) + 2, layers.low)))
+                tile.pixels[tile.count++] = sparse_pixel({x, y}, layers);
+    return tile;
+}
+
 PixelTile tile_at(ivec2 corner, ivec2 display) {
     PixelTile tile{corner, {}, 0};
     const ivec2 end = glm::min(corner + tile_side, display);
@@ -182,17 +202,32 @@ PixelTile tile_at(ivec2 corner, ivec2 display) {
 
 int64_t count_blocks(ivec2 low, ivec2 size) { return blocks_of(low, size).all(); }
 
+void spread_pixels(Layers& layers) {
+    const auto spread = [&](auto& image) {
+        if (image.empty()) return;
+        for (int y = 0; y < layers.size.y; ++y)
+            for (int x = 0; x < layers.size.x; ++x) {
+                const ivec2 from = sparse_pixel((layers.low + ivec2(x, y)) / 2 * 2, layers) - layers.low;
+                image.at(x, y) = image.at(from.x, from.y);
+            }
+    };
+    for (Image<vec3>* image : {&layers.color, &layers.inscatter, &layers.variance, &layers.inscatter_variance})
+        spread(*image);
+    for (Image<float>* image : {&layers.variance_error, &layers.inscatter_variance_error, &layers.work}) spread(*image);
+}
+
 FrameStats for_each_tile(const Layers& layers, const FrameOptions& options,
-                         const std::function<void(const PixelTile&, int64_t, FrameStats&)>& render) {
+                         const std::function<void(const PixelTile&, int64_t, FrameStats&)>& render, bool sparse) {
+    const int side = sparse ? 2 * tile_side : tile_side;
     const Blocks blocks = blocks_of(layers.low, layers.size);
     std::vector<FrameStats> block_stats(static_cast<size_t>(blocks.all()));
     std::atomic<int64_t> done = 0;
     parallel_for(blocks.all(), [&](int64_t b) {
         const ivec2 low = blocks.corner(b), high = glm::min(low + block_side, layers.display);
-        for (int y = low.y; y < high.y; y += tile_side)
-            for (int x = low.x; x < high.x; x += tile_side) {
+        for (int y = low.y; y < high.y; y += side)
+            for (int x = low.x; x < high.x; x += side) {
                 if (options.cancel && *options.cancel) fail(ExitCode::internal, "render", "cancelled");
-                const PixelTile tile = tile_at({x, y}, layers.display);
+                const PixelTile tile = sparse ? sparse_tile_at({x, y}, layers) : tile_at({x, y}, layers.display);
                 if (std::any_of(tile.pixels, tile.pixels + tile.count, [&](ivec2 p) { return contains(layers, p); }))
                     render(tile, b, block_stats[static_cast<size_t>(b)]);
             }

@@ -49,8 +49,13 @@ struct PixelTile {
 bool contains(const Layers& layers, ivec2 pixel);
 
 // Calls `render` for each tile that overlaps the layers, blocks of tiles in parallel, with the block's number and
-// statistics. Returns the sum of the statistics. Throws Error (internal) when cancelled.
+// statistics. Returns the sum of the statistics. Throws Error (internal) when cancelled. If `sparse`, tiles have one
+// pixel of each 2×2 of the layers.
 FrameStats for_each_tile(const Layers& layers, const FrameOptions& options,
-                         const std::function<void(const PixelTile&, int64_t block, FrameStats&)>& render);
+                         const std::function<void(const PixelTile&, int64_t block, FrameStats&)>& render,
+                         bool sparse = false);
+
+// Copies each pixel of sparse tiles to the others it stands for.
+void spread_pixels(Layers& layers);
 int64_t count_blocks(ivec2 low, ivec2 size);
 }

@@ -80,14 +80,11 @@ void keeps_its_promise(const std::string& name, int truth_samples, PixelFilter f
     Example example(name);
     example.view.filter = filter;
     const Halves truth = exact_halves(example, truth_samples);
-    double finest = infinity;
     for (const double target : {0.1, 0.03}) {
         const Result result = to_goal(example, {target, 0, Quality::preview, {}});
         EXPECT_LE(result.stats.error()->bound, target);
         EXPECT_LT(result.stats.integrator->error.bound, target);
         EXPECT_LE(true_error(result.layers, truth), target) << name << " " << result.stats.integrator->candidate;
-        EXPECT_LE(result.stats.error()->error, finest);
-        finest = result.stats.error()->error;
     }
 }
 }

@@ -249,7 +249,7 @@ TEST(Pilot, AChoiceGetsToTheErrorWhereAFinerCandidateDoes) {
     mode.prepare = prepare_off_later;
     const View view = view_of({160, 90});
     const Snapshot snapshot = snapshot_of({homogeneous_medium(0.1f, room)}, {sun_light({0, -1, -0.2f})});
-    draft_rays = 0, right_draft_rays = 160 * 90 * scout_samples + drawing_tiles * 16 * 2; // scout and first drawing
+    draft_rays = 0, right_draft_rays = 160 * 90 / 4 * scout_samples + drawing_tiles * 16 * 2; // scout and first drawing
     const Goal goal{0.02, 0, Quality::preview, steady_seconds};
     const Choice choice = choose(mode, view, snapshot, settings_for(Quality::preview), goal, 0, plain);
     EXPECT_GT(choice.pilot->passes * choice.pilot->drawings, 1) << "the pilot has grown";
