@@ -11,6 +11,9 @@ namespace {
 // missed it.
 constexpr double beside_share = 1.0 / 16, image_share = 1.0 / 256;
 
+// Share of the squared error from which on tiles that cannot have more samples leave little for others to improve.
+constexpr double max_of_full = 0.5;
+
 double square_of_mean(const Image<vec3>& image) {
     double sum = 0;
     for (const vec3& value : image.pixels) sum += channel_mean(value);
@@ -155,30 +158,32 @@ Allotment allot(const Layers& layers, const Image<float>& taken, const AllotLimi
     const auto at = [&](double scale) {
         Allotment result{layers.low / tile_side, Image<float>(tile_count(layers))};
         const double of_scale = std::pow(scale, power);
-        double sum = 0, squares = 0;
+        double sum = 0, squares = 0, of_full = 0; // of_full: of tiles that have the most samples they can
         for (size_t i = 0; i < shares.size(); ++i) {
             const double samples = std::clamp(scale * shares[i], 1.0 * least, most);
             result.samples.pixels[i] = static_cast<float>(samples);
             result.rays += sources.pixels[i] * sources.costs[i] * samples;
             const double variance = sources.variances[i] / std::clamp(of_scale * powers[i], of_least, of_most);
             sum += sources.pixels[i] * variance, squares += sources.squares(i, variance);
+            if (samples >= most) of_full += sources.pixels[i] * variance;
         }
+        const bool can_improve = of_full < max_of_full * sum;
         result.squared_error = sum / sources.pixel_count;
         const double pixels = squares > 0 ? sum * sum / squares : infinity;
         result.squared_bound = squares > 0 ? result.squared_error * largest_square(pixels) : 0;
         result.pixels = std::min(pixels, bright);
-        return result;
+        return std::pair(result, can_improve);
     };
 
     // The error decreases as the scale grows: bisect the logarithm of the scale.
     double low = -60, high = 60;
     for (int i = 0; i < 40; ++i) {
         const double middle = (low + high) / 2;
-        const Allotment tried = at(std::exp(middle));
+        const auto [tried, can_improve] = at(std::exp(middle));
         const bool good = tried.squared_error <= limits.squared_error && tried.squared_bound <= limits.squared_bound;
-        (!good && tried.rays < limits.rays ? low : high) = middle;
+        (!good && can_improve && tried.rays < limits.rays ? low : high) = middle;
     }
-    return at(std::exp(high));
+    return at(std::exp(high)).first;
 }
 
 Image<float> uniform_samples(const Layers& layers, double samples) {

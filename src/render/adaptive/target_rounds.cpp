@@ -65,6 +65,8 @@ double work_as_it_goes(const TargetRounds& rounds, const Allotment& allotment, c
 }
 }
 
+// If many more samples are to come, a part of them first shows how fast noise falls: as n^-1 at worst, as was assumed,
+// but often as n^-1.5, so that the cube root of their growth is too much.
 bool begin_allotment(TargetRounds& rounds, const Layers& layers, FrameStats& stats) {
     const Noise& noise = *stats.noise;
     if (rounds.freedom == 0 || !(noise.error > 0) || !std::isfinite(noise.bound)) return false;
@@ -82,17 +84,13 @@ bool begin_allotment(TargetRounds& rounds, const Layers& layers, FrameStats& sta
     const double gain = rounds.allotment ? 2 : 1.2;
     if (!(gain * allotment.rays < as_it_goes) || allotment.rays > 1.1 * limits.rays) return false;
     rounds.work_seconds = ray_seconds * allotment.rays;
-    // Noise may fall faster than few samples suggest: if many more are to come, render a part of them first to find
-    // out.
     double growth = 0;
     for (size_t i = 0; i < taken.pixels.size(); ++i)
         growth = std::max(growth, double{allotment.samples.pixels[i]} / taken.pixels[i]);
     const bool again = rounds.allotment.has_value();
     rounds.allotment = allotment, rounds.done = 0, rounds.freedom = 0, rounds.expected = 1;
-    rounds.first_part = rounds.checks_early()    ? early_share
-                        : !again && growth <= 16 ? 1
-                        : rounds.continues()     ? 0.2
-                                                 : 0.4;
+    const double part = std::min(rounds.continues() ? 0.2 : 0.4, 4 / std::cbrt(growth));
+    rounds.first_part = rounds.checks_early() ? early_share : again || growth > 16 ? part : 1;
     return true;
 }
 

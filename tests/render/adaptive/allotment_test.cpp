@@ -88,6 +88,15 @@ TEST(Allotment, DoesNotTrustTilesThatShowNoNoise) {
     EXPECT_EQ(least.samples.at(0, 0), 6);
 }
 
+TEST(Allotment, EndsWhereTilesThatHoldTheErrorCanHaveNoMore) {
+    Layers layers = two_columns(0.1f, 0.1f);
+    for (int i = 0; i < 16; ++i) layers.variance.at(i % 4, i / 4) = vec3(1e6f);
+    const Allotment allotment = allot(layers, 1, {1e-3, endless}, 1, 2);
+    EXPECT_EQ(allotment.samples.at(0, 0), max_tile_samples);
+    EXPECT_GT(allotment.squared_error, 1e-3);
+    EXPECT_LT(allotment.rays, pixels_of_many * 0.01 * max_tile_samples) << "all pixels would have to have as many";
+}
+
 // One pixel holds nearly all of the error, so that chance may make it much larger than it is on the average.
 TEST(Allotment, MakesTheBoundSmallWhereFewPixelsCount) {
     Layers layers = two_columns(1, 1, 64);
