@@ -9,7 +9,7 @@ namespace tyndall {
 namespace {
 // A tile's variance counts as at least these shares of its neighbors' and of the image's mean: few samples may have
 // missed it.
-constexpr double beside_share = 1.0 / 16, image_share = 1.0 / 256;
+constexpr double beside_share = 1.0 / 16, image_share = 1.0 / 2048;
 
 // Share of the squared error from which on tiles that cannot have more samples leave little for others to improve.
 constexpr double max_of_full = 0.5;
