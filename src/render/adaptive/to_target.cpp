@@ -165,7 +165,8 @@ double render_rounds(TargetRounds& rounds, const Rendering& rendering, double wo
         if (begin_allotment(rounds, image.layers, stats)) rays = 0;
         work = next_round(rounds, stats);
         if (work == 0 || rounds.goal.error == 0) continue;
-        make_forecast((rounds.expected - rounds.done) * rounds.work_seconds, rounds, rendering.options, stats);
+        const double more = (rounds.expected - rounds.done) * rounds.work_seconds;
+        make_forecast(more + rounds.check_seconds, rounds, rendering.options, stats);
         work = next_round(rounds, stats); // within the limit that the forecast may have set
     }
     return work;
