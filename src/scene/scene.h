@@ -53,7 +53,8 @@ struct CameraSource {
     int node = -1; // glTF camera: looks along the node's -Z ...
     Keyed<vec3> position{vec3(0, 1, 4)}, target{vec3(0)}, up{vec3(0, 1, 0)}; // ... else these
     Keyed<float> vertical_fov{0.8f};                                         // radians
-    float ortho_height = 0, near = 0.01f, far = infinity;
+    Keyed<float> ortho_height{0.0f};                                         // meters; 0 = perspective
+    float near = 0.01f, far = infinity;
     Keyed<float> aperture{0.0f};       // radius of the lens, meters; 0 = a pinhole
     std::optional<Keyed<float>> focus; // meters along the viewing direction; none: the target's distance
     int blades = 0;
@@ -61,6 +62,8 @@ struct CameraSource {
     Shutter shutter;
     std::string entry; // JSON pointer of its entry in the scene file; empty = none
 };
+
+inline bool is_orthographic(const CameraSource& camera) { return camera.ortho_height.at(0) > 0; }
 
 // The unit of a light's intensity.
 enum class LightUnit {
@@ -101,7 +104,7 @@ struct LightSource {
     Keyed<float> width{1.0f}, height{1.0f}; // rectangle, meters
     bool two_sided = false;                 // rectangle, disc
     bool visible = true;                    // rectangle, disc, sphere: the camera sees it
-    float range = infinity;
+    Keyed<float> range{infinity};           // meters
     bool shadows = true;
     std::vector<bool> lit, casters; // per instance: whether it is lit by the light, and casts its shadows; empty = all
     std::optional<Keyed<vec3>> target; // from which `direction` was computed
@@ -173,7 +176,7 @@ struct Background {
     bool lat_long = false;                        // wrapped around the scene; else a plate behind the image
     Keyed<float> intensity{1.0f};
     Keyed<float> exposure{0.0f}; // stops
-    float rotation = 0;          // radians about Y, lat-long
+    Keyed<float> rotation{0.0f}; // radians about Y, lat-long
 };
 
 // An environment light.

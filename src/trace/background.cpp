@@ -43,7 +43,7 @@ BackgroundState background_at(const Background& background, const Moment& moment
     now.zenith = color_of(background.zenith), now.ground = color_of(background.ground);
     now.image = background.image;
     now.lat_long = background.lat_long;
-    now.rotation = background.rotation;
+    now.rotation = background.rotation.at(moment.seconds);
     return now;
 }
 

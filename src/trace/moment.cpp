@@ -96,7 +96,7 @@ Camera camera_at(const Scene& scene, int camera, double seconds) {
         result = look_at(position, target, source.up.at(seconds), fov);
     }
     result.name = source.name;
-    result.ortho_height = source.ortho_height;
+    if (is_orthographic(source)) result.ortho_height = std::max(source.ortho_height.at(seconds), 1e-6f);
     result.near = source.near, result.far = source.far;
     set_lens(scene, source, seconds, result);
     return result;

@@ -33,7 +33,7 @@ bool crosses_picture(vec2 from, vec2 to, ivec2 size) {
 
 bool changes(const Scene& scene, const CameraSource& camera) {
     return !camera.position.constant() || !camera.target.constant() || !camera.up.constant() ||
-           !camera.vertical_fov.constant() || !camera.aperture.constant() ||
+           !camera.vertical_fov.constant() || !camera.ortho_height.constant() || !camera.aperture.constant() ||
            (camera.focus && !camera.focus->constant()) || !camera.blade_rotation.constant() ||
            is_moving(scene, camera.node);
 }
@@ -44,7 +44,7 @@ bool changes(const Scene& scene, const LightSource& light) {
     if (light.gobo && !all(light.gobo->rotation, light.gobo->scale)) return true;
     return is_moving(scene, light.node) ||
            !all(light.position, light.direction, light.up, light.profile_rotation, light.inner_cone, light.outer_cone,
-                light.radius, light.angle, light.width, light.height);
+                light.radius, light.angle, light.width, light.height, light.range);
 }
 
 namespace {
@@ -65,6 +65,15 @@ bool changes(const MediumSource& medium) {
 }
 
 namespace {
+// The maps around the scene that turn.
+std::vector<const Keyed<float>*> turning_maps(const Scene& scene) {
+    std::vector<const Keyed<float>*> result;
+    if (!scene.background.rotation.constant()) result.push_back(&scene.background.rotation);
+    if (scene.environment && !scene.environment->map.rotation.constant())
+        result.push_back(&scene.environment->map.rotation);
+    return result;
+}
+
 double seconds_of(const Scene& scene, int frame, const Shutter& shutter, float share) {
     return (frame + shutter.open + share * (shutter.close - shutter.open)) / scene.frame_rate;
 }
@@ -94,12 +103,21 @@ float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const 
     float most = turned ? glm::distance(*turned, 0.5f * vec2(size)) : glm::length(vec2(size));
     for (const float way : traveled)
         if (std::isfinite(way)) most = std::max(most, way);
+    const float pixels_per_radian = static_cast<float>(size.y) / first.vertical_fov;
+    for (const Keyed<float>* rotation : turning_maps(scene)) {
+        float turn = 0;
+        for (int look = 1; look < looks; ++look)
+            turn +=
+                std::abs(rotation->at(seconds_of(scene, frame, shutter, static_cast<float>(look) / (looks - 1))) -
+                         rotation->at(seconds_of(scene, frame, shutter, static_cast<float>(look - 1) / (looks - 1))));
+        most = std::max(most, turn * pixels_per_radian);
+    }
     return most;
 }
 
 bool moves_while_open(const Scene& scene, int camera, const Shutter& shutter) {
     if (!shutter) return false;
-    return changes(scene, scene.cameras[static_cast<size_t>(camera)]) ||
+    return changes(scene, scene.cameras[static_cast<size_t>(camera)]) || !turning_maps(scene).empty() ||
            std::ranges::any_of(scene.lights, [&](const LightSource& light) { return changes(scene, light); }) ||
            std::ranges::any_of(scene.media, [](const MediumSource& medium) { return changes(medium); }) ||
            std::ranges::any_of(scene.instances, [&](const Instance& one) { return is_moving(scene, one); });

@@ -85,7 +85,7 @@ void add_rim(const LightSource& light, const NodeFrame& frame, vec3 middle, doub
 void add_light(const ShutterPoints& all, size_t index, double seconds, Points& points) {
     const LightSource& light = all.scene.lights[index];
     const NodeFrame frame = light_frame(all.scene, light, seconds);
-    const float reach = std::min(light.range, all.extent);
+    const float reach = std::min(light.range.at(seconds), all.extent);
     add_axis(light, frame, reach, points);
     const bool has_rim = has_cone(light) || has_area(light) || light.profile;
     if (has_rim && changes(all.scene, light)) add_rim(light, frame, all.forward[index], seconds, reach, points);

@@ -98,7 +98,7 @@ std::vector<ShadowRay> shadow_rays(const Scene& scene, double seconds, float ext
         const Pair pair = pairs[k * pairs.size() / used];
         const LightSource& light = scene.lights[pair.light];
         const Mesh& mesh = scene.meshes[static_cast<size_t>(scene.instances[pair.instance].mesh)];
-        const float size = size_of(light, seconds), reach = std::min(light.range, extent);
+        const float size = size_of(light, seconds), reach = std::min(light.range.at(seconds), extent);
         const size_t count = std::min(max_rays / used, max_of_pair);
         for (size_t i = 0; i < count; ++i) {
             ShadowRay ray = ray_through(mesh, pair, i, count, k);
@@ -117,7 +117,8 @@ void add_shadows(const Scene& scene, const std::vector<ShadowRay>& rays, double 
         const NodeFrame& frame = at.lights[ray.light];
         const vec3 mesh = at.on_mesh(ray);
         const bool distant = is_distant(light);
-        const float nearest = distant ? extent / 128 : ray.distance, reach = std::min(light.range, extent);
+        const float nearest = distant ? extent / 128 : ray.distance;
+        const float reach = std::min(light.range.at(seconds), extent);
         const vec3 origin = distant ? mesh : frame.position;
         vec3 direction = distant ? frame.forward : glm::normalize(mesh - origin);
         if (!distant && !shines_along(light, frame.forward, direction, seconds)) direction = vec3(nowhere);

@@ -58,7 +58,7 @@ Light light_at(const Scene& scene, const LightSource& source, const Moment& mome
     set_brightness(source, moment, light);
     light.outer_cone = source.outer_cone.at(seconds);
     light.inner_cone = std::min(source.inner_cone.at(seconds), light.outer_cone);
-    light.range = source.range;
+    light.range = source.range.at(moment.seconds);
     light.radius = source.radius.at(seconds), light.angle = source.angle.at(seconds);
     light.shadows = source.shadows;
     return light;

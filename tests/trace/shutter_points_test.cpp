@@ -191,5 +191,19 @@ TEST(ShutterPoints, ACameraZoomsIntoWhatItIsAmong) {
     const float middle = std::tan(pi / 8 + std::atan(0.5f) / 2);
     EXPECT_NEAR(motion(scene), 2 * std::sqrt(2.0f) * middle * (1 / 0.5f - 1), 1e-2f);
 }
+
+// A tenth of a radian, of one radian across the image's height.
+TEST(ShutterPoints, AMapAroundTheSceneTurns) {
+    Scene scene = seen_from_the_front();
+    scene.cameras[0].ortho_height = 0, scene.cameras[0].vertical_fov = 1.0f;
+    EXPECT_FALSE(moves_while_open(scene, 0, second));
+    scene.background.rotation = from_to(0.2f, 0.3f);
+    EXPECT_TRUE(moves_while_open(scene, 0, second));
+    EXPECT_NEAR(image_motion(scene, 0, ivec2(side), 0, second), 0.1f * side, 1e-3f);
+    scene.background.rotation = 0.0f;
+    scene.environment.emplace().map.rotation = from_to(0.3f, 0.2f);
+    EXPECT_TRUE(moves_while_open(scene, 0, second));
+    EXPECT_NEAR(image_motion(scene, 0, ivec2(side), 0, second), 0.1f * side, 1e-3f);
+}
 }
 }

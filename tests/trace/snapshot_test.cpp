@@ -43,6 +43,17 @@ MediumSource file_source(const std::filesystem::path& file) {
     return source;
 }
 
+TEST(Snapshot, MapsTurnAndRangesGrow) {
+    Scene scene;
+    scene.background.stated = true, scene.background.rotation = from_to(0.0f, 2.0f);
+    LightSource lamp;
+    lamp.intensity = 10.0f, lamp.range = from_to(2.0f, 4.0f);
+    scene.lights = {lamp};
+    const Snapshot now = make_snapshot(scene, Moment{12, 0.5});
+    EXPECT_EQ(now.background.rotation, 1);
+    EXPECT_EQ(now.lights.at(0).range, 3);
+}
+
 TEST(Snapshot, ScaleZeroHidesLights) {
     Scene scene;
     Node parent, node;

@@ -60,7 +60,7 @@ Json lights_json(const Scene& scene) {
                             {"temperature", light.temperature.at(0)},
                             {"profile", light.profile != nullptr},
                             {"gobo", light.gobo.has_value()},
-                            {"range", light.range}});
+                            {"range", light.range.at(0)}});
     });
 }
 
@@ -144,7 +144,7 @@ std::string content_text(const Scene& scene) {
     for (const std::string& name : scene.animations) text += "  clip          " + printable(name, 80) + "\n";
     for (const CameraSource& camera : scene.cameras)
         text += "  camera        " + printable(camera.name.empty() ? "(no name)" : camera.name, 80) +
-                (camera.ortho_height > 0 ? ", orthographic"
+                (is_orthographic(camera) ? ", orthographic"
                                          : formatted(", vertical field of view %.1f degrees",
                                                      glm::degrees(double{camera.vertical_fov.at(0)}))) +
                 lens_text(camera) + shutter_text(camera.shutter) + "\n";

@@ -10,7 +10,7 @@ template<class T> void scale(Keyed<T>& keyed, float factor) {
 void scale_light(LightSource& light, float factor) {
     scale(light.position, factor), scale(light.radius, factor);
     scale(light.width, factor), scale(light.height, factor);
-    light.range *= factor;
+    scale(light.range, factor);
     const bool per_area = is_distant(light) || (has_area(light) && light.unit == LightUnit::native); // lux or nits
     if (!per_area) scale(light.intensity, factor * factor);
 }
@@ -37,8 +37,8 @@ Scene scaled(Scene scene, float factor) {
         for (mat4& matrix : skin.inverse_bind) matrix[3] *= vec4(vec3(factor), 1);
     for (CameraSource& camera : scene.cameras) {
         scale(camera.position, factor), scale(camera.target, factor);
-        camera.near *= factor, camera.far *= factor, camera.ortho_height *= factor;
-        scale(camera.aperture, factor);
+        camera.near *= factor, camera.far *= factor;
+        scale(camera.ortho_height, factor), scale(camera.aperture, factor);
         if (camera.focus) scale(*camera.focus, factor);
     }
     for (LightSource& light : scene.lights) scale_light(light, factor);

@@ -22,7 +22,7 @@ void read_image(const Field& image, Scene& scene, Background& map) {
 void read_projection(const Field& field, Background& background) {
     background.lat_long = field.json->string_or("projection", "plate") == "lat_long";
     if (const Field intensity = field.member("intensity")) background.intensity = keyed_number(intensity);
-    if (const Field rotation = field.member("rotation")) background.rotation = read_degrees(rotation);
+    if (const Field rotation = field.member("rotation")) background.rotation = keyed_degrees(rotation);
     if (field.member("rotation") && !background.lat_long)
         refuse(field.member("rotation"), "is for the projection \"lat_long\" only");
 }

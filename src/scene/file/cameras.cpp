@@ -22,7 +22,7 @@ void read_lens(const Field& field, CameraSource& camera) {
         if (given && !aperture) refuse(given, "has no effect without aperture_radius");
     if (turn && !blades) refuse(turn, "has no effect without aperture_blades");
     if (!aperture) return;
-    if (camera.ortho_height > 0) refuse(aperture, "is for perspective cameras only; this one is orthographic");
+    if (is_orthographic(camera)) refuse(aperture, "is for perspective cameras only; this one is orthographic");
     if (!focus && camera.node >= 0) refuse(field, "needs focus_distance: a camera of the glTF has no target");
     camera.aperture = keyed_number(aperture);
     if (focus) camera.focus = keyed_number(focus);
@@ -72,7 +72,7 @@ CameraSource camera_source(const Field& field, std::string_view default_name, dv
     const Field fov = field.member("vertical_fov"), height = field.member("ortho_height");
     if (fov && height) refuse(height, "cannot be combined with vertical_fov: a camera is orthographic or perspective");
     if (fov) camera.vertical_fov = keyed_degrees(fov);
-    if (height) camera.ortho_height = read_number(height);
+    if (height) camera.ortho_height = keyed_number(height);
     if (const Field near = field.member("near")) camera.near = read_number(near);
     if (const Field far = field.member("far")) {
         camera.far = read_number(far);

@@ -76,7 +76,7 @@ void read_environment(const Field& root, Scene& scene) {
             read_map(field, scene, environment.map);
             if (const Field rotation = field.member("rotation")) {
                 if (environment.map.kind != BackgroundKind::image) refuse(rotation, "is for an image only");
-                environment.map.rotation = read_degrees(rotation);
+                environment.map.rotation = keyed_degrees(rotation);
             }
             show(field, environment, scene.background);
         } else {

@@ -92,7 +92,7 @@ void read_fields(const Field& field, Scene& scene, LightSource& light) {
     number("radius", light.radius, keyed_number);
     if (has_area(light)) read_face(field, light);
     number("angle", light.angle, keyed_degrees);
-    if (const Field range = field.member("range")) light.range = read_number(range);
+    number("range", light.range, keyed_number);
     light.shadows = field.json->boolean_or("shadows", light.shadows);
     if (const Field link = field.member("light_link")) light.lit = read_link(link, scene);
     if (const Field link = field.member("shadow_link")) light.casters = read_link(link, scene);

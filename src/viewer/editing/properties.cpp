@@ -57,7 +57,7 @@ bool has_bounds(const Scene& scene, size_t i) {
 }
 bool is_own_camera(const Scene& scene, size_t i) { return scene.cameras[i].node < 0; }
 bool has_view_angle(const Scene& scene, size_t i) {
-    return is_own_camera(scene, i) && scene.cameras[i].ortho_height == 0;
+    return is_own_camera(scene, i) && !is_orthographic(scene.cameras[i]);
 }
 bool has_lens(const Scene& scene, size_t i) {
     const CameraSource& camera = scene.cameras[i];

@@ -95,7 +95,7 @@ TEST(ScaledScene, ScalesEveryLengthAndWhatIsPerLength) {
     EXPECT_EQ(large.lights[0].position.at(0), vec3(4));
     EXPECT_EQ(large.lights[0].intensity.at(0), 48);
     EXPECT_EQ(large.lights[0].radius.at(0), 0.4f);
-    EXPECT_EQ(large.lights[0].range, 20);
+    EXPECT_EQ(large.lights[0].range.at(0), 20);
     EXPECT_EQ(large.lights[1].intensity.at(0), 7);
     EXPECT_EQ(large.lights[2].width.at(0), 8);
     EXPECT_EQ(large.lights[2].height.at(0), 12);

@@ -29,7 +29,7 @@ TEST(SceneEnvironment, IsSeenWhereThereIsNoBackground) {
     EXPECT_TRUE(scene.lights.empty());
     EXPECT_EQ(scene.environment->name, "dome");
     EXPECT_TRUE(scene.environment->map.lat_long);
-    EXPECT_FLOAT_EQ(scene.environment->map.rotation, glm::radians(90.0f));
+    EXPECT_FLOAT_EQ(scene.environment->map.rotation.at(0), glm::radians(90.0f));
     EXPECT_EQ(scene.environment->map.image->at(0, 0), vec3(1, 0, 0));
     EXPECT_FLOAT_EQ(scene.environment->volume_scale.at(0), 0.5f);
     EXPECT_FLOAT_EQ(scene.environment->surface_scale.at(0), 0.25f);

@@ -71,7 +71,7 @@ TEST(SceneFile, Cameras) {
     ASSERT_EQ(scene.cameras.size(), 2u);
     EXPECT_EQ(scene.camera, 1);
     EXPECT_FLOAT_EQ(scene.cameras[0].vertical_fov.at(0), pi / 2);
-    EXPECT_EQ(scene.cameras[1].ortho_height, 12);
+    EXPECT_EQ(scene.cameras[1].ortho_height.at(0), 12);
     EXPECT_EQ(scene.cameras[1].far, 20);
     EXPECT_EQ(scene.cameras[1].up.at(0), vec3(0, 0, -1));
     EXPECT_EQ(loaded(folder, R"({"tyndall": 1, )" + list + "}").camera, 0);
@@ -93,7 +93,7 @@ TEST(SceneFile, Lights) {
     EXPECT_LE(glm::length(key.direction.at(0) - vec3(3, -4, 0)), 1e-6f) << "from position to target";
     EXPECT_FLOAT_EQ(key.inner_cone.at(0), glm::radians(10.0f));
     EXPECT_FLOAT_EQ(key.outer_cone.at(0), glm::radians(20.0f));
-    EXPECT_EQ(key.range, 40);
+    EXPECT_EQ(key.range.at(0), 40);
     EXPECT_EQ(key.volume_scale.at(0), 2);
     EXPECT_EQ(key.surface_scale.at(0), 0.5f);
     EXPECT_EQ(scene.lights[1].kind, LightKind::sun);
@@ -240,11 +240,25 @@ TEST(SceneFile, Backgrounds) {
     const Scene dome = loaded(
         folder, R"({"tyndall": 1, "background": {"image": "sky.hdr", "projection": "lat_long", "rotation": 90}})");
     EXPECT_TRUE(dome.background.lat_long);
-    EXPECT_FLOAT_EQ(dome.background.rotation, pi / 2);
+    EXPECT_FLOAT_EQ(dome.background.rotation.at(0), pi / 2);
     EXPECT_EQ(dome.background.image->at(0, 0), vec3(8, 4, 0));
     const Scene sky = loaded(folder, R"({"tyndall": 1, "background": {"sky": {"zenith": [0, 0, 1], "horizon": 0.5}}})");
     EXPECT_EQ(sky.background.kind, BackgroundKind::sky);
     EXPECT_EQ(sky.background.ground.at(0), vec3(0.5f)) << "the horizon's, when not given";
+}
+
+// What other programs animate, too: a sky that turns, a light that dies away, an orthographic zoom.
+TEST(SceneFile, MapsRangesAndHeightsOfViewsHaveKeys) {
+    const TempFolder folder;
+    folder.put("sky.hdr", radiance_of({2, 1}, {{128, 64, 0, 132}, {0, 0, 0, 0}}));
+    const Scene scene = loaded(folder, R"({"tyndall": 1,
+        "camera": {"position": [0, 0, 5], "target": [0, 0, 0], "ortho_height": {"keys": [[0, 4], [1, 2]]}},
+        "lights": [{"type": "environment", "image": "sky.hdr", "rotation": {"keys": [[0, 0], [1, 180]]}},
+                   {"type": "point", "position": [0, 1, 0], "intensity": 1, "range": {"keys": [[0, 2], [1, 4]]}}]})");
+    EXPECT_FLOAT_EQ(scene.cameras[0].ortho_height.at(0.5), 3);
+    EXPECT_FLOAT_EQ(scene.environment->map.rotation.at(0.5), pi / 2);
+    EXPECT_FLOAT_EQ(scene.background.rotation.at(0.5), pi / 2) << "the camera sees it turn, too";
+    EXPECT_FLOAT_EQ(scene.lights[0].range.at(0.5), 3);
 }
 
 TEST(SceneFile, Billboards) {

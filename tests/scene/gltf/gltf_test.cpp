@@ -201,7 +201,7 @@ TEST(Gltf, CamerasKeepTheirVerticalAngle) {
     ASSERT_EQ(scene.cameras.size(), 2u);
     EXPECT_EQ(scene.cameras[0].vertical_fov.at(0), 0.5f);
     EXPECT_EQ(scene.cameras[0].far, infinity);
-    EXPECT_EQ(scene.cameras[1].ortho_height, 4);
+    EXPECT_EQ(scene.cameras[1].ortho_height.at(0), 4);
     EXPECT_EQ(scene.cameras[1].far, 50);
     EXPECT_NE(scene.cameras[0].name, scene.cameras[1].name);
     EXPECT_FALSE(has_warning(scene, "no camera"));
@@ -301,7 +301,7 @@ TEST(Gltf, LightUnits) {
         EXPECT_NEAR(scene.lights[0].intensity.at(0), 54351.4, 1);
         EXPECT_NEAR(scene.lights[1].intensity.at(0), 2049, 0.1);
         EXPECT_EQ(scene.lights[0].name, "Lamp");
-        EXPECT_EQ(scene.lights[0].range, 7);
+        EXPECT_EQ(scene.lights[0].range.at(0), 7);
         EXPECT_EQ(scene.lights[1].kind, LightKind::sun);
     }
 }

@@ -144,7 +144,7 @@ TEST(SceneEdit, AValueWithoutKeysIsReplaced) {
     set(scene, "lights/evening/shadows", "off");
     EXPECT_FALSE(scene.lights[6].shadows);
     set(scene, "lights/2/range", "30");
-    EXPECT_EQ(scene.lights[2].range, 30);
+    EXPECT_EQ(scene.lights[2].range.at(0), 30);
     set(scene, "media/2/wind", "0 0 -0.5");
     EXPECT_EQ(scene.media[2].recipe->wind, vec3(0, 0, -0.5f));
     set(scene, "ambient", "-0");
