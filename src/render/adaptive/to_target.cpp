@@ -102,9 +102,9 @@ void begin(const Choice& choice, TargetRounds& rounds, Rendering& rendering, Fra
 // keep the last forecast of the first third, or later the first that is not infinite. A goal that is far off gets a
 // time limit.
 void make_forecast(double more, TargetRounds& rounds, const FrameOptions& options, FrameStats& stats) {
-    constexpr double early = 1.0 / 3, wrong = 1.5;
+    constexpr double wrong = 1.5;
     const double passed = rounds.goal.clock() - rounds.start, seconds = passed + more, before = stats.forecast_seconds;
-    if (before > 0 && before < infinity && passed > early * seconds) return;
+    if (before > 0 && before < infinity && passed > early_share_of_time * seconds) return;
     stats.forecast_seconds = seconds;
     if (rounds.goal.seconds == 0 && seconds > longest_seconds) rounds.goal.seconds = longest_seconds;
     const bool as_before = before > 0 && (seconds == before || (seconds < wrong * before && before < wrong * seconds));

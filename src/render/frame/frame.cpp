@@ -85,8 +85,9 @@ void FrameStats::add_lost(const FrameStats& missed) {
     prepare_seconds += missed.prepare_seconds, render_seconds += missed.render_seconds;
     fog_seconds += missed.fog_seconds;
     camera_rays += missed.camera_rays, steps += missed.steps;
-    forecast_seconds =
-        missed.forecast_seconds < infinity ? missed.forecast_seconds : missed.goal_seconds + forecast_seconds;
+    const double seconds = missed.goal_seconds + forecast_seconds;
+    const bool is_early = forecast_seconds > 0 && missed.goal_seconds <= early_share_of_time * seconds;
+    forecast_seconds = is_early || missed.forecast_seconds == infinity ? seconds : missed.forecast_seconds;
     goal_seconds += missed.goal_seconds;
 }
 

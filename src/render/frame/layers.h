@@ -73,6 +73,9 @@ struct OrdersError {
     Noise pixels; // root mean square over pixels
 };
 
+// Share of the predicted time up to which a later forecast replaces an earlier one.
+inline constexpr double early_share_of_time = 1.0 / 3;
+
 struct FrameStats {
     double prepare_seconds = 0, render_seconds = 0;
     double fog_seconds = 0; // of both, time spent in the mode: its preparation, and its share of every thread's time
@@ -87,7 +90,7 @@ struct FrameStats {
     std::optional<Noise> moments_error;   // of motion blur from few moments, if it was measured
     int wanted_moments = 0;               // that the goal needs, if nothing was rendered as the frame has too few
     double goal_seconds = 0;              // all the time that counts towards a goal
-    double forecast_seconds = 0; // of it, predicted in its first third; 0 = not predicted, infinite = out of reach
+    double forecast_seconds = 0;          // of it, predicted early; 0 = not predicted, infinite = out of reach
 
     std::optional<Noise> error() const; // noise and all other errors that were measured
     bool is_noise_alone() const { return !integrator && !orders && !moments_error; }
