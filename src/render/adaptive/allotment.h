@@ -19,7 +19,7 @@ struct Allotment {
 };
 
 // What to allot for: both error limits at the least cost, or, if that takes more, the least error with `rays` rays of
-// mean cost.
+// mean cost; or less than either where tiles that can have no more samples hold most of the error.
 struct AllotLimits {
     double squared_error = 0, rays = 0, squared_bound = infinity;
 };

@@ -68,7 +68,8 @@ double samples_for(const Contender& contender, double error) {
     }
     const double pixels = static_cast<double>(choice.scout->layers.size.x) * choice.scout->layers.size.y;
     const Allotment spread = choice.spread({left, 1.01 * max_target_samples * pixels}, scout_samples);
-    return spread.rays <= max_target_samples * pixels ? spread.rays / pixels : infinity;
+    const bool reaches = spread.squared_error <= 1.001 * left && spread.rays <= max_target_samples * pixels;
+    return reaches ? spread.rays / pixels : infinity;
 }
 
 // Predicts the image that a candidate renders for the goal; if it misses the goal, the best it can do.

@@ -11,8 +11,7 @@ namespace {
 // variance than others, which show by then.
 constexpr double max_first_samples = 64;
 constexpr double early_share = 0.2; // of an image, for the first round of one that is checked early
-// Times an image like the scout, but of all pixels: an allotment that takes longer pays for one to go by.
-constexpr double many_times = 8;
+constexpr double many_times = 8; // the work of two samples in all pixels: what an allotment must exceed to pay for them
 
 // Total samples per pixel to reach `target`, given the noise after `samples`: variance falls as 1 / n. A fiftieth more,
 // so that the bound is usually met at the first try.
@@ -161,6 +160,8 @@ double begin_with_scout(TargetRounds& rounds, FrameStats& stats) {
     double most = max_first_samples, expected = max_target_samples;
     if (rounds.goal.error > 0)
         expected = scout_samples * std::pow(stats.noise->bound / rounds.noise_target(), 2 / rounds.power());
+    // Where few pixels hold the noise, the scout may have missed some, and where many samples are to come, it pays to
+    // know better: then all pixels take two samples first, whose allotment follows.
     if (begin_allotment(rounds, choice.scout->layers, stats)) {
         most = scout_samples, expected = rounds.allotment->rays / pixel_count(rounds.view);
         if (expected < many_times * most && rounds.allotment->pixels >= many_pixels) return next_round(rounds, stats);
