@@ -105,11 +105,11 @@ float image_motion(const Scene& scene, int camera, ivec2 size, int frame, const 
         if (std::isfinite(way)) most = std::max(most, way);
     const float pixels_per_radian = static_cast<float>(size.y) / first.vertical_fov;
     for (const Keyed<float>* rotation : turning_maps(scene)) {
+        const auto at = [&](int look) {
+            return rotation->at(seconds_of(scene, frame, shutter, static_cast<float>(look) / (looks - 1)));
+        };
         float turn = 0;
-        for (int look = 1; look < looks; ++look)
-            turn +=
-                std::abs(rotation->at(seconds_of(scene, frame, shutter, static_cast<float>(look) / (looks - 1))) -
-                         rotation->at(seconds_of(scene, frame, shutter, static_cast<float>(look - 1) / (looks - 1))));
+        for (int look = 1; look < looks; ++look) turn += std::abs(at(look) - at(look - 1));
         most = std::max(most, turn * pixels_per_radian);
     }
     return most;
