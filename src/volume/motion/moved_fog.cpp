@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "volume/bricks/half.h"
 #include "volume/motion/cell_grid.h"
 #include "volume/motion/velocity_field.h"
 
@@ -119,6 +120,42 @@ vec3 way_back(const LocalVelocity& velocity, vec3 x, vec3 usual, float time) {
     return known ? y : x;
 }
 
+// The value of a voxel in local coordinates, which may lie outside.
+float voxel_value(const BrickPool& pool, ivec3 local) {
+    for (int axis = 0; axis < 3; ++axis)
+        if (local[axis] < 0 || local[axis] >= 8 * pool.size[axis]) return 0;
+    const ivec3 brick = local / 8, v = local % 8;
+    const int32_t id = pool.index[size_t((brick.x * pool.size.y + brick.y) * pool.size.z + brick.z)];
+    if (id <= 0) return id == 0 ? 0 : pool.constants[static_cast<size_t>(-id - 1)];
+    return float_from_half(pool.values[size_t(id - 1) * brick_stride + size_t(v.x * 81 + v.y * 9 + v.z)]);
+}
+
+// Weights of four voxels at a point between the middle two: cubic convolution (Keys 1981).
+void cubic_weights(float t, float weights[4]) {
+    weights[0] = t * (-0.5f + t * (1 - 0.5f * t));
+    weights[1] = 1 + t * t * (-2.5f + 1.5f * t);
+    weights[2] = t * (0.5f + t * (2 - 1.5f * t));
+    weights[3] = t * t * (-0.5f + 0.5f * t);
+}
+
+// Cubic interpolation limited to the range of the eight nearest voxels: a resampled peak keeps its height, which
+// trilinear interpolation would lower, dimming fire the more, the steeper its light depends on temperature.
+float sample_cubic(const BrickPool& pool, vec3 point) {
+    const vec3 local = local_point(pool, point), first = glm::floor(local);
+    float weights[3][4];
+    for (int axis = 0; axis < 3; ++axis) cubic_weights(local[axis] - first[axis], weights[axis]);
+    float sum = 0, low = infinity, high = 0;
+    for (int x = 0; x < 4; ++x)
+        for (int y = 0; y < 4; ++y)
+            for (int z = 0; z < 4; ++z) {
+                const float value = voxel_value(pool, ivec3(first) + ivec3(x, y, z) - 1);
+                sum += weights[0][x] * weights[1][y] * weights[2][z] * value;
+                const bool near = (x == 1 || x == 2) && (y == 1 || y == 2) && (z == 1 || z == 2);
+                if (near) low = std::min(low, value), high = std::max(high, value);
+            }
+    return std::clamp(sum, low, high);
+}
+
 void set_box(SparseVolume& volume, const CellGrid& grid) {
     if (volume.leaves.empty() && volume.tiles.empty()) return;
     volume.active_low = grid.first * 8, volume.active_high = (grid.first + grid.size) * 8 - 1;
@@ -145,7 +182,7 @@ SparseVolume moved_fog(const PlacedBricks& fog, const VelocityField& field, doub
         const Arrivals& arrivals = moved.arrivals[moved.grid.at(cell)];
         const vec3 usual = arrivals.velocity / arrivals.count;
         for (size_t v = 0; v < 512; ++v)
-            leaf.values[v] = sample_density(bricks, way_back(velocity, vec3(leaf.origin + voxel_of(v)), usual, t));
+            leaf.values[v] = sample_cubic(bricks, way_back(velocity, vec3(leaf.origin + voxel_of(v)), usual, t));
     });
     set_box(volume, moved.grid);
     return volume;

@@ -63,11 +63,40 @@ TEST(MovedFog, IsShiftedByAConstantVelocityAndNothingIsCut) {
     for (const double time : {0.5, -0.5, 2.0, 4.5}) {
         const SparseVolume moved = moved_fog(fog, field, time, "fog");
         const SparseVolume expected = ball(vec3(20, 4, -30) + static_cast<float>(time) * vec3(10, -4, 1));
-        EXPECT_NEAR(mass_of(moved), mass_of(expected), 0.003 * mass_of(expected)) << time;
+        // Limiting cubic interpolation at the kinks of this ball adds some mass.
+        EXPECT_NEAR(mass_of(moved), mass_of(expected), 0.005 * mass_of(expected)) << time;
         for (const vec3 offset : {vec3(0), vec3(4, 0, 0), vec3(0, -5, 0), vec3(-2, 3, 1)}) {
             const vec3 point = vec3(20, 4, -30) + static_cast<float>(time) * vec3(10, -4, 1) + offset;
             EXPECT_NEAR(at(moved, point), at(expected, point), 0.03) << time << " " << offset.x;
         }
+    }
+}
+
+// Linear interpolation of voxels halfway between those of the file would lower the peak of this flame by 9 %, cubic by
+// 1 %.
+TEST(MovedFog, APeakBetweenVoxelsKeepsItsHeight) {
+    const auto flame = [](vec3 p) { return 300 + 1500 * std::exp(-glm::dot(p, p) / 8); };
+    const PlacedBricks fog =
+        placed(volume_of(ivec3(-12), ivec3(12), [&](int x, int y, int z) { return flame(vec3(x, y, z)); }));
+    const VelocityField field = field_in(ivec3(-12), ivec3(12), [](vec3) { return vec3(1); });
+    for (const double time : {0.25, 0.5, -0.5}) {
+        const SparseVolume moved = moved_fog(fog, field, time, "fire");
+        const auto bricks = make_bricks(moved);
+        for (const ivec3 voxel : {ivec3(0), ivec3(1, 0, 0), ivec3(2, 1, 0), ivec3(3, 3, 3)})
+            EXPECT_NEAR(sample_density(*bricks, vec3(voxel)), flame(vec3(voxel) - static_cast<float>(time)), 20)
+                << time;
+    }
+}
+
+// Interpolation must not swing beyond the voxels' range: no cold rim around a flame, no negative density.
+TEST(MovedFog, AnEdgeBetweenVoxelsDoesNotOvershoot) {
+    const PlacedBricks fog =
+        placed(volume_of(ivec3(0), ivec3(15), [](int x, int, int) { return x < 8 ? 1000.0f : 100.0f; }));
+    const VelocityField field = field_in(ivec3(0), ivec3(15), [](vec3) { return vec3(1, 0, 0); });
+    const SparseVolume moved = moved_fog(fog, field, 0.3, "fire");
+    for (int x = 2; x < 15; ++x) {
+        const float value = testing::value_at(moved, {x, 7, 7});
+        EXPECT_TRUE(value >= 100 && value <= 1000) << x << " " << value;
     }
 }
 
