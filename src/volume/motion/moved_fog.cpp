@@ -120,39 +120,54 @@ vec3 way_back(const LocalVelocity& velocity, vec3 x, vec3 usual, float time) {
     return known ? y : x;
 }
 
-// The value of a voxel in local coordinates, which may lie outside.
-float voxel_value(const BrickPool& pool, ivec3 local) {
-    for (int axis = 0; axis < 3; ++axis)
-        if (local[axis] < 0 || local[axis] >= 8 * pool.size[axis]) return 0;
-    const ivec3 brick = local / 8, v = local % 8;
-    const int32_t id = pool.index[size_t((brick.x * pool.size.y + brick.y) * pool.size.z + brick.z)];
-    if (id <= 0) return id == 0 ? 0 : pool.constants[static_cast<size_t>(-id - 1)];
-    return float_from_half(pool.values[size_t(id - 1) * brick_stride + size_t(v.x * 81 + v.y * 9 + v.z)]);
+// A row of four voxels around a point on one axis: their bricks, places in them, and weights.
+struct Row {
+    int brick[4], voxel[4];
+    float weight[4];
+};
+
+// Weights are those of cubic convolution (Keys 1981). Points outside are moved to the layer of zeros there.
+Row row_at(float local, int bricks) {
+    const float inside = glm::clamp(local, 0.0f, static_cast<float>(8 * bricks - 1));
+    const auto first = static_cast<int>(inside);
+    const float t = inside - static_cast<float>(first);
+    Row row{{},
+            {},
+            {t * (-0.5f + t * (1 - 0.5f * t)), 1 + t * t * (-2.5f + 1.5f * t), t * (0.5f + t * (2 - 1.5f * t)),
+             t * t * (-0.5f + 0.5f * t)}};
+    for (int i = 0; i < 4; ++i) {
+        const int voxel = std::clamp(first + i - 1, 0, 8 * bricks - 1);
+        row.brick[i] = voxel / 8, row.voxel[i] = voxel % 8;
+    }
+    return row;
 }
 
-// Weights of four voxels at a point between the middle two: cubic convolution (Keys 1981).
-void cubic_weights(float t, float weights[4]) {
-    weights[0] = t * (-0.5f + t * (1 - 0.5f * t));
-    weights[1] = 1 + t * t * (-2.5f + 1.5f * t);
-    weights[2] = t * (0.5f + t * (2 - 1.5f * t));
-    weights[3] = t * t * (-0.5f + 0.5f * t);
-}
-
-// Cubic interpolation limited to the range of the eight nearest voxels: a resampled peak keeps its height, which
-// trilinear interpolation would lower, dimming fire the more, the steeper its light depends on temperature.
+// Cubic interpolation limited to the range of the eight nearest voxels. A resampled peak keeps its height, which
+// trilinear interpolation would lower: fire would dim, as its light depends steeply on temperature.
 float sample_cubic(const BrickPool& pool, vec3 point) {
-    const vec3 local = local_point(pool, point), first = glm::floor(local);
-    float weights[3][4];
-    for (int axis = 0; axis < 3; ++axis) cubic_weights(local[axis] - first[axis], weights[axis]);
-    float sum = 0, low = infinity, high = 0;
+    const vec3 local = local_point(pool, point);
+    const Row rows[] = {row_at(local.x, pool.size.x), row_at(local.y, pool.size.y), row_at(local.z, pool.size.z)};
+    const auto value = [&](int x, int y, int z) {
+        const int brick = (rows[0].brick[x] * pool.size.y + rows[1].brick[y]) * pool.size.z + rows[2].brick[z];
+        const int32_t id = pool.index[static_cast<size_t>(brick)];
+        if (id <= 0) return id == 0 ? 0.0f : pool.constants[static_cast<size_t>(-id - 1)];
+        const int voxel = rows[0].voxel[x] * 81 + rows[1].voxel[y] * 9 + rows[2].voxel[z];
+        return float_from_half(pool.values[static_cast<size_t>(id - 1) * brick_stride + static_cast<size_t>(voxel)]);
+    };
+    float low = infinity, high = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const float near = value(1 + (corner >> 2), 1 + (corner >> 1 & 1), 1 + (corner & 1));
+        low = std::min(low, near), high = std::max(high, near);
+    }
+    if (!(low < high)) return low;
+
+    float sum = 0;
     for (int x = 0; x < 4; ++x)
-        for (int y = 0; y < 4; ++y)
-            for (int z = 0; z < 4; ++z) {
-                const float value = voxel_value(pool, ivec3(first) + ivec3(x, y, z) - 1);
-                sum += weights[0][x] * weights[1][y] * weights[2][z] * value;
-                const bool near = (x == 1 || x == 2) && (y == 1 || y == 2) && (z == 1 || z == 2);
-                if (near) low = std::min(low, value), high = std::max(high, value);
-            }
+        for (int y = 0; y < 4; ++y) {
+            float along_z = 0;
+            for (int z = 0; z < 4; ++z) along_z += rows[2].weight[z] * value(x, y, z);
+            sum += rows[0].weight[x] * rows[1].weight[y] * along_z;
+        }
     return std::clamp(sum, low, high);
 }
 

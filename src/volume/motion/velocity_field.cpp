@@ -2,6 +2,7 @@
 
 #include "base/parallel.h"
 #include "volume/bricks/bricks.h"
+#include "volume/motion/cell_grid.h"
 
 #include <algorithm>
 #include <map>
@@ -42,6 +43,41 @@ std::shared_ptr<const BrickPool> placed(const BrickPool& pool, const dmat4& inde
 }
 }
 
+namespace {
+constexpr size_t joint_stride = 9 * 9 * 9;
+
+// Null unless all three components are known at the same voxels.
+std::shared_ptr<const JointBricks> joint_bricks(const VelocityField& field) {
+    if (field.any) return nullptr;
+    for (size_t c = 0; c < 3; ++c)
+        if (!field.known[c] || field.known[c] != field.known[0] || field.index_to_world[c] != field.index_to_world[0])
+            return nullptr;
+    const auto known = placed(*field.known[0], dmat4(1));
+    const std::shared_ptr<const BrickPool> components[] = {placed(*field.components[0], dmat4(1)),
+                                                           placed(*field.components[1], dmat4(1)),
+                                                           placed(*field.components[2], dmat4(1))};
+    auto joint = std::make_shared<JointBricks>();
+    std::vector<ivec3> cells;
+    size_t at = 0;
+    for_each_cell(ivec3(0), known->size - 1, [&](ivec3 cell) {
+        const bool filled = known->index[at++] != 0;
+        if (filled) cells.push_back(known->low + 8 * cell);
+        joint->index.push_back(filled ? static_cast<int32_t>(cells.size()) : 0);
+    });
+    joint->values.resize(cells.size() * joint_stride);
+    parallel_ranges(static_cast<int64_t>(cells.size()), 16, [&](int64_t begin, int64_t end) {
+        for (auto n = static_cast<size_t>(begin); n < static_cast<size_t>(end); ++n)
+            for (size_t v = 0; v < joint_stride; ++v) {
+                const vec3 voxel(cells[n] + ivec3(v / 81, v / 9 % 9, v % 9));
+                joint->values[n * joint_stride + v] = {
+                    sample_density(*known, voxel), sample_density(*components[0], voxel),
+                    sample_density(*components[1], voxel), sample_density(*components[2], voxel)};
+            }
+    });
+    return joint;
+}
+}
+
 VelocityField make_velocity_field(VelocityVolume volume) {
     VelocityField field;
     if (std::ranges::all_of(volume.components, &SparseVolume::empty)) return field;
@@ -62,11 +98,12 @@ VelocityField make_velocity_field(VelocityVolume volume) {
     }
     if (!volume.any.empty()) field.any = make_bricks(volume.any), field.any_to_world = volume.any.index_to_world;
     field.fastest = glm::length(greatest);
+    field.joint = joint_bricks(field);
     return field;
 }
 
 LocalVelocity::LocalVelocity(const VelocityField& field, const dmat4& index_to_world)
-    : low_(field.low), range_(field.range), to_index_(glm::inverse(glm::dmat3(index_to_world))) {
+    : joint_(field.joint), low_(field.low), range_(field.range), to_index_(glm::inverse(glm::dmat3(index_to_world))) {
     const dmat4 to_index = glm::inverse(index_to_world);
     if (field.any) any_ = placed(*field.any, to_index * field.any_to_world);
     for (size_t c = 0; c < 3; ++c) {
@@ -79,7 +116,26 @@ LocalVelocity::LocalVelocity(const VelocityField& field, const dmat4& index_to_w
     }
 }
 
+vec4 LocalVelocity::joint_at(vec3 point) const {
+    const BrickPool& pool = *known_[0];
+    const vec3 local = glm::clamp(local_point(pool, point), vec3(0), 8.0f * vec3(pool.size) - 1.0f);
+    const ivec3 cell(local), brick = cell / 8, voxel = cell % 8;
+    const int32_t id = joint_->index[static_cast<size_t>((brick.x * pool.size.y + brick.y) * pool.size.z + brick.z)];
+    if (id == 0) return vec4(0);
+    const vec4* corner = &joint_->values[static_cast<size_t>(id - 1) * joint_stride +
+                                         static_cast<size_t>(voxel.x * 81 + voxel.y * 9 + voxel.z)];
+    const vec3 weight = local - vec3(cell);
+    const auto along_z = [&](int offset) { return glm::mix(corner[offset], corner[offset + 1], weight.z); };
+    return glm::mix(glm::mix(along_z(0), along_z(9), weight.y), glm::mix(along_z(81), along_z(90), weight.y), weight.x);
+}
+
 bool LocalVelocity::at(vec3 point, vec3& velocity) const {
+    if (joint_) {
+        const vec4 joint = joint_at(point);
+        if (!(joint.x > min_share)) return false;
+        velocity = to_index_ * (low_ + range_ * (vec3(joint.y, joint.z, joint.w) / joint.x));
+        return true;
+    }
     vec3 share(infinity);
     for (glm::length_t c = 0; c < 3; ++c) {
         const auto i = static_cast<size_t>(c);
