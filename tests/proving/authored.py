@@ -1,9 +1,10 @@
-"""More kinds of scenes: skies, faces, fire, glowing meshes, colored water, an open shutter. They stand apart so that the
-seeds of the others keep their scenes."""
+"""More kinds of scenes: skies, faces, fire, glowing meshes, colored water, an open shutter, wind, projectors, droplets, lenses,
+plates. They stand apart so that the seeds of the others keep their scenes."""
 import numpy as np
 
-from families import Drawn, foliage, hall, headlights, keyhole, moving, slats, smoke, soft_lamps, underwater
+from families import Drawn, clouds, foliage, hall, headlights, keyhole, moving, slats, smoke, soft_lamps, underwater
 from geometry import Deformation, Material, Mesh, box, cylinder, sphere
+from light_files import gobo_image, ies_profile, sky_image
 
 
 def gradient(c, brightness):
@@ -112,4 +113,94 @@ def open_shutter(c):
     return drawn
 
 
-AUTHORED = [sky, faces, fire, glowing, colored, open_shutter]
+def mapped(c):
+    """An image of a sky around open places, its sun no brighter than such images have it."""
+    drawn = c.choice([foliage, headlights, smoke])(c)
+    drawn.files["sky.hdr"] = sky_image(c)
+    drawn.background = {"image": "sky.hdr", "projection": "lat_long", "intensity": c.log(0.5, 10), "rotation": c.uniform(-180, 180)}
+    drawn.ambient, drawn.lights = 0, [{"type": "environment", "intensity": c.log(0.3, 3)}]
+    return drawn
+
+
+def projectors(c):
+    """Lamps with measured profiles, and spots that project images."""
+    drawn = c.choice([headlights, soft_lamps, smoke])(c)
+    for i, light in enumerate(drawn.lights):
+        if light["type"] == "spot" and c.happens(0.6):
+            drawn.files[f"gobo{i}.png"] = gobo_image(c)
+            light["gobo"] = {"image": f"gobo{i}.png", "scale": c.uniform(0.6, 1.5), "rotate": c.uniform(-180, 180)}
+        elif light["type"] in ("point", "spot"):
+            drawn.files[f"lamp{i}.ies"] = ies_profile(c)
+            light["ies"] = {"file": f"lamp{i}.ies", "rotate": c.uniform(-180, 180)}
+            if light["type"] == "point":
+                light["target"] = c.point((-3, -3, -3), (3, 0, 3))
+    return drawn
+
+
+def phase_function(c):
+    one = lambda: c.choice([
+        lambda: {"type": "draine", "g": c.uniform(-0.3, 0.8), "alpha": c.uniform(0, 1)},
+        lambda: {"type": "mie", "droplet_diameter": c.log(0.2, 50)},
+        lambda: {"type": "henyey_greenstein", "g": c.uniform(-0.5, 0.95)},
+        lambda: {"type": "rayleigh"}])()
+    kind = c.choice(["one", "mix", "table", "legendre"])
+    if kind == "one":
+        return one()
+    if kind == "mix":
+        return {"type": "mix", "weight": c.uniform(0.1, 0.9), "lobes": [one(), one()]}
+    if kind == "table":
+        ahead, fall = c.log(1, 300), c.uniform(5, 60)
+        return {"type": "table", "values": [[angle, 1 + ahead * np.exp(-angle / fall) + c.uniform(0, 0.5)]
+                                            for angle in np.linspace(0, 180, c.randint(10, 90)).tolist()]}
+    g = c.uniform(-0.5, 0.7)
+    return {"type": "legendre", "coefficients": [(2 * l + 1) * g ** l for l in range(c.randint(16, 40))]}
+
+
+def droplets(c):
+    """Fog and clouds whose phase functions are anything but one Henyey-Greenstein."""
+    drawn = c.choice([clouds, smoke, headlights, underwater])(c)
+    for medium in drawn.media:
+        medium["phase"] = phase_function(c)
+        del medium["g"]
+    return drawn
+
+
+def blown(c):
+    """Clouds from files in wind and eddies, moved by their velocities while the shutter is open."""
+    drawn = c.choice([clouds, smoke])(c)
+    for medium in drawn.media:
+        bounds = medium["recipe"]["bounds"]
+        size = max(b - a for a, b in zip(bounds["low"], bounds["high"]))
+        medium["recipe"] |= {"wind": c.point([-size] * 3, [size] * 3), "voxel_size": size / c.uniform(20, 50)}
+        medium |= {"type": "vdb", "grids": {"velocity": "vel"}}
+    half = c.log(0.05, 0.5)
+    drawn.camera["shutter"] = {"open": -half, "close": half}
+    return drawn
+
+
+def lenses(c):
+    """Depth of field, with lamps in view that are out of focus."""
+    drawn = c.choice([soft_lamps, slats, foliage, headlights])(c)
+    away = np.linalg.norm(np.subtract(drawn.camera["position"], drawn.camera["target"]))
+    drawn.camera |= {"aperture_radius": away * c.log(0.002, 0.05), "focus_distance": away * c.log(0.3, 3)}
+    if c.happens(0.5):
+        drawn.camera |= {"aperture_blades": c.randint(5, 9), "blade_rotation": c.uniform(0, 90)}
+    return drawn
+
+
+def plates(c):
+    """Fog for a plate: some of the meshes hold it out, and lights are linked to some."""
+    drawn = c.choice([foliage, slats, soft_lamps])(c)
+    for i, mesh in enumerate(drawn.meshes):
+        mesh.name = f"mesh {i + 1}"
+    names = [mesh.name for mesh in drawn.meshes]
+    drawn.objects = [{"name": name, **({"matte": True} if i == 0 or c.happens(0.4) else {"casts_shadows": c.happens(0.5)})}
+                     for i, name in enumerate(names)]
+    for light in drawn.lights:
+        link = c.choice(["light_link", "shadow_link", None])
+        if link:
+            light[link] = {c.choice(["include", "exclude"]): [c.choice(names)]}
+    return drawn
+
+
+AUTHORED = [sky, faces, fire, glowing, colored, open_shutter, mapped, projectors, droplets, blown, lenses, plates]

@@ -25,6 +25,8 @@ class Drawn:
     frame: int = 1
     gltf: str = None
     offset: list = None  # of the meshes' node
+    objects: list = dataclasses.field(default_factory=list)  # settings of meshes by name
+    files: dict = dataclasses.field(default_factory=dict)  # contents of files beside the scene's, by name
     plain: "Drawn" = None  # the same picture at the usual scale and place: what the truth is made from
 
 

@@ -35,6 +35,7 @@ class Mesh:
     material: Material
     points: np.ndarray
     deformation: Deformation = None
+    name: str = None  # of a node of its own
 
 
 def quads(corners):
@@ -200,13 +201,16 @@ def write_glb(meshes, path, offset=None):
     """Flat shaded; the same points give the same bytes. `offset` moves all of them."""
     glb = Glb(offset)
     primitives = [glb.primitive(mesh, index) for index, mesh in enumerate(meshes)]
-    still = [primitive for mesh, primitive in zip(meshes, primitives) if not mesh.deformation]
+    still = [primitive for mesh, primitive in zip(meshes, primitives) if not (mesh.deformation or mesh.name)]
     if still:
         glb.meshes.append({"primitives": still})
         glb.nodes[0]["mesh"] = 0
     for mesh, primitive in zip(meshes, primitives):
         if mesh.deformation:
             glb.deforming(mesh, primitive)
+        elif mesh.name:
+            glb.meshes.append({"primitives": [primitive]})
+            glb.node(mesh=len(glb.meshes) - 1, name=mesh.name)
     leaves = any(mesh.material.leaf for mesh in meshes)
     if leaves:
         picture = leaf_picture()

@@ -236,7 +236,7 @@ def main():
     parser.add_argument("-o", "--output", type=pathlib.Path, default=pathlib.Path("proving"))
     parser.add_argument("--jobs", type=int, default=1, help="scenes at once; each takes two threads")
     parser.add_argument("--ladder", action="store_true")
-    parser.add_argument("--authored", action="store_true", help="skies, faces, fire, glowing meshes, colored fog, open shutters")
+    parser.add_argument("--authored", action="store_true", help="other families: skies, fire, projectors, lenses, ... (authored.py)")
     parser.add_argument("--size", type=lambda text: tuple(map(int, text.split("x"))), help="of all pictures")
     parser.add_argument("--truth-seconds", type=float, default=120,
                         help="of processor time that a truth may take: by default a minute on two cores")

@@ -27,6 +27,10 @@ def write_scene(drawn, size, folder, program):
                 subprocess.run([program, "bake", recipe, "-o", folder / medium["file"], "--frames", "1-3" if sequence else "1",
                                 "-q", *more], check=True)
         document["media"].append(medium)
+    for name, content in drawn.files.items():
+        (folder / name).write_bytes(content)
+    if drawn.objects:
+        document["objects"] = drawn.objects
     if drawn.background:
         document["background"] = drawn.background
     if drawn.gltf:
