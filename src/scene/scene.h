@@ -46,6 +46,7 @@ struct Instance {
     bool matte = false;        // a holdout for what is behind it; it still emits light and casts shadows
     int skin = -1;             // whose joints replace its node's transform; -1 = none
     std::vector<Keyed<float>> target_weights{}; // of the mesh's morph targets
+    std::vector<bool> lit{}, casters{};         // of the light that it emits, as those of a LightSource
 };
 
 struct CameraSource {

@@ -149,6 +149,7 @@ Snapshot make_snapshot(const Scene& scene, Moment moment, const Snapshot* previo
         set_extent(scene, snapshot);
     LightLinks links = light_links(scene, moment.seconds, previous);
     snapshot.casters = std::move(links.casters), snapshot.lit = std::move(links.lit);
+    snapshot.emission_links = std::move(links.of_instances);
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         vec3 up(0, 1, 0);
         Light light = light_at(scene, scene.lights[i], moment, up);

@@ -64,14 +64,15 @@ struct Snapshot {
     std::shared_ptr<const Occluders> occluders;     // of all surfaces
     std::vector<CasterSet> casters;                 // of lights that only some surfaces shadow
     std::vector<std::vector<bool>> lit;             // flags per instance, for lights that illuminate only some
-    vec3 anchor{0};                                 // center of the scene, the same in every frame
-    float extent = 10;                              // meters: size of the scene, the same in every frame
-    Box bounds;                                     // of meshes, local lights and bounded media
-    std::vector<std::string> notes;                 // what was repaired in this frame's files; to be reported once
-    std::vector<FogSource> fog_sources;             // one per medium of the scene: what the next frame can reuse
-    std::shared_ptr<FrameCache> cache;              // entries of this frame; null in snapshots made by hand
-    std::shared_ptr<FrameCache> previous_cache;     // entries of the previous frame; null for the first
-    std::shared_ptr<CacheFolder> files;             // of a prepared plan; else null
+    std::vector<ivec2> emission_links; // per instance, sets of its light's casters and of what that lights; empty = all
+    vec3 anchor{0};                    // center of the scene, the same in every frame
+    float extent = 10;                 // meters: size of the scene, the same in every frame
+    Box bounds;                        // of meshes, local lights and bounded media
+    std::vector<std::string> notes;    // what was repaired in this frame's files; to be reported once
+    std::vector<FogSource> fog_sources;                   // one per medium of the scene: what the next frame can reuse
+    std::shared_ptr<FrameCache> cache;                    // entries of this frame; null in snapshots made by hand
+    std::shared_ptr<FrameCache> previous_cache;           // entries of the previous frame; null for the first
+    std::shared_ptr<CacheFolder> files;                   // of a prepared plan; else null
     std::shared_ptr<const std::vector<Snapshot>> moments; // of a frame with motion blur; this is their middle
 
     // Out of line, so that code that only holds a snapshot needs neither lights nor media.
@@ -112,6 +113,13 @@ const std::shared_ptr<const Occluders>& shadow_casters(const Environment& enviro
 bool shadows_light(const Light& light, const Snapshot& snapshot, int instance);
 bool is_lit(const Light& light, const Snapshot& snapshot, int instance);
 bool is_lit(const Environment& environment, const Snapshot& snapshot, int instance);
+
+// The surfaces in a set of casters, -1 = all; null if there are none.
+const std::shared_ptr<const Occluders>& caster_surfaces(int set, const Snapshot& snapshot);
+
+// The sets that shadow the light an instance emits (x) and that it lights (y), -1 = all; whether it lights another one.
+ivec2 emission_links(const Snapshot& snapshot, int instance);
+bool is_lit_by_emitter(const Snapshot& snapshot, int emitter, int instance);
 
 // Whether a surface that shadows one of the lights has alpha.
 bool has_alpha_shadows(const Snapshot& snapshot);

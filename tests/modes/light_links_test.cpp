@@ -9,6 +9,7 @@
 #include "support/meshes.h"
 #include "support/run_mode.h"
 #include "trace/fluence/fluence.h"
+#include "trace/lights/emission_surface.h"
 #include "trace/occlusion/occluders.h"
 #include "trace/small_scenes.h"
 #include "trace/surface.h"
@@ -231,6 +232,62 @@ TEST(LightLinks, TheSkyShinesOnTheObjectsThatItIsLinkedTo) {
         shade_surfaces(snapshot, {}, {&point, 1}, u, {&radiance, 1});
         EXPECT_NEAR(radiance.x, lit ? 1 : 0, 0.005);
     }
+}
+
+// The room with a glowing box behind the wall; instance 2.
+Scene glowing_room() {
+    Scene scene = room({});
+    Material material = lambert(vec3(0.5f));
+    material.emission = vec3(100);
+    scene.materials = {lambert(vec3(0.5f)), material};
+    for (Mesh& mesh : scene.meshes) mesh.material = 0;
+    add_mesh(scene, box_of({1.1f, 0.1f, -0.2f}, {1.3f, 0.3f, 0.2f}));
+    scene.meshes.back().material = 1;
+    return scene;
+}
+
+TEST(LightLinks, AWallShadowsTheEmissiveSurfaceThatItIsLinkedTo) {
+    Scene dark = glowing_room(), linked = dark, open = dark;
+    linked.instances[2].casters = {true, false, true};
+    open.instances.erase(open.instances.begin() + 1);
+    const Ray ray{{-1, 1.3f, 5}, {0, 0, -1}, 10}; // above the wall, on its far side
+    for (const char* mode : {"march", "path"}) {
+        const RayEstimate expected = along(mode, at_start(open), ray, fog_light);
+        EXPECT_LT(along(mode, at_start(dark), ray, fog_light).value.x, 0.8 * expected.value.x) << mode;
+        expect_same(along(mode, at_start(linked), ray, fog_light), expected, mode);
+    }
+
+    // The lamps in its place have its casters.
+    const Snapshot with = at_start(linked), shadowed = at_start(dark);
+    const std::vector<Ray> rays = pixel_rays(camera_view(), with);
+    for (const char* mode : {"froxel", "shadow-map", "shadow-volume"}) {
+        const double without_shadow = total(run_mode(mode, camera_view(), with, quick_settings(), rays));
+        EXPECT_LT(total(run_mode(mode, camera_view(), shadowed, quick_settings(), rays)), 0.95 * without_shadow)
+            << mode;
+    }
+}
+
+TEST(LightLinks, AnEmissiveSurfaceLightsTheObjectsThatItIsLinkedTo) {
+    Scene scene = glowing_room();
+    scene.media.clear();
+    const Ray ray{{2, 0.5f, 0}, {0, -1, 0}, 10};
+    const auto seen = [&](std::vector<bool> lit) {
+        scene.instances[2].lit = std::move(lit);
+        const Snapshot snapshot = at_start(scene);
+        const RayEstimate path = along("path", snapshot, ray, surface_light);
+        Hits hits;
+        snapshot.occluders->closest({&ray, 1}, 0, hits);
+        const SurfacePoint point = snapshot.occluders->surface(ray, hits, 0);
+        std::vector<vec2> u;
+        for (uint32_t i = 0; i < 1 << 17; ++i) u.push_back({sample2(i, 1).x, sample2(i, 1).y});
+        vec3 radiance(0);
+        add_emitted_light(emitters_of(snapshot), snapshot, {&point, 1}, u, {&radiance, 1});
+        EXPECT_NEAR(path.value.x, radiance.x, 4.5 * path.error.x + 0.02 * radiance.x);
+        return radiance.x;
+    };
+    EXPECT_GT(seen({}), 0.1f);
+    EXPECT_NEAR(seen({true, false, false}), seen({}), 1e-6);
+    EXPECT_EQ(seen({false, true, true}), 0);
 }
 
 TEST(LightLinks, ScatteredLightLeavesABulbWithoutShadows) {

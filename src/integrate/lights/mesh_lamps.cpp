@@ -24,7 +24,7 @@ constexpr double nearly_even = 0.04;           // relative variation below which
 struct SurfaceEmission {
     dvec3 position{0}, normal{0}, candela{0};
     double weight = 0; // luminance of the candela
-    int instance = 0;
+    int instance = 0, casters = -1;
 };
 
 struct LampPart {
@@ -50,15 +50,16 @@ LampPart part_of(std::vector<SurfaceEmission> points) {
     return part;
 }
 
-std::vector<SurfaceEmission> points_of(const EmissiveTriangles& glow, const Occluders& surfaces) {
+std::vector<SurfaceEmission> points_of(const EmissiveTriangles& glow, const Snapshot& snapshot) {
     std::vector<SurfaceEmission> points;
     for (uint32_t i = 0; i < points_asked; ++i) {
         const float u = (float(i) + 0.5f) / points_asked;
         const Sample2 pair = sample2(i, hash(0x3e5fu));
-        const EmissivePoint point = sample_triangles(glow, surfaces, u, {pair.x, pair.y});
+        const EmissivePoint point = sample_triangles(glow, *snapshot.occluders, u, {pair.x, pair.y});
         const dvec3 candela = dvec3(point.emission) / (double{point.pdf} * points_asked);
         if (const double weight = luminance(vec3(candela)); weight > 0 && std::isfinite(weight))
-            points.push_back({dvec3(point.position), dvec3(point.normal), candela, weight, point.instance});
+            points.push_back({dvec3(point.position), dvec3(point.normal), candela, weight, point.instance,
+                              emission_links(snapshot, point.instance).x});
     }
     return points;
 }
@@ -100,11 +101,16 @@ void thin_out(LampPart& part) {
     part.points = std::move(kept);
 }
 
-std::vector<LampPart> parts_of(const EmissiveTriangles& glow, const Occluders& surfaces) {
-    std::vector<SurfaceEmission> points = points_of(glow, surfaces);
-    if (points.empty()) return {};
-    std::vector<LampPart> parts{part_of(std::move(points))};
-    while (parts.size() < max_lamps) {
+std::vector<LampPart> parts_of(const EmissiveTriangles& glow, const Snapshot& snapshot) {
+    const std::vector<SurfaceEmission> points = points_of(glow, snapshot);
+    std::vector<LampPart> parts;
+    for (const int casters : glow.casters) {
+        std::vector<SurfaceEmission> some;
+        std::ranges::copy_if(points, std::back_inserter(some),
+                             [&](const SurfaceEmission& point) { return point.casters == casters; });
+        if (!some.empty()) parts.push_back(part_of(std::move(some)));
+    }
+    while (!parts.empty() && parts.size() < max_lamps) {
         const auto worst = std::ranges::max_element(parts, {}, split_error);
         if (!(split_error(*worst) > 0)) break;
         auto [one, other] = halves(*worst);
@@ -215,14 +221,21 @@ MeshLamps make_lamps(const Snapshot& snapshot, const EmissiveTriangles& glow) {
     std::vector<bool> glows(snapshot.scene->instances.size());
     for (const EmissiveTriangle& triangle : glow.triangles) glows[static_cast<size_t>(triangle.instance)] = true;
     const auto glowing = Occluders::make(*snapshot.scene, snapshot.seconds, nullptr, &glows);
-    glows.flip();
-    result.casters = {glows, Occluders::make(*snapshot.scene, snapshot.seconds, nullptr, &glows)};
-    for (const LampPart& part : parts_of(glow, *snapshot.occluders)) {
+    for (const int set : glow.casters) {
+        std::vector<bool> casters =
+            set < 0 ? std::vector<bool>(glows.size(), true) : snapshot.casters[static_cast<size_t>(set)].instances;
+        for (size_t i = 0; i < glows.size(); ++i)
+            if (glows[i]) casters[i] = false;
+        result.casters.push_back({casters, Occluders::make(*snapshot.scene, snapshot.seconds, nullptr, &casters)});
+    }
+    for (const LampPart& part : parts_of(glow, snapshot)) {
         Light lamp;
         lamp.name = "glowing surface " + std::to_string(result.lamps.size() + 1);
         lamp.position = vec3(part.middle);
         lamp.radius = ball_radius(part.spread);
         lamp.core = 1e-5f * snapshot.extent, lamp.surface_scale = 0;
+        lamp.casters =
+            static_cast<int>(std::ranges::find(glow.casters, part.points.front().casters) - glow.casters.begin());
         aim(part, *glowing, lamp);
         if (!(max_component(lamp.intensity) > 0)) continue;
         result.reach = std::max(result.reach, reach_of(part, *glowing, lamp));
@@ -235,17 +248,17 @@ MeshLamps make_lamps(const Snapshot& snapshot, const EmissiveTriangles& glow) {
 std::shared_ptr<const MeshLamps> mesh_lamps(const Snapshot& snapshot) {
     const auto glow = emissive_triangles(snapshot);
     if (!glow) return nullptr;
-    return cached(snapshot, "lamps for glowing surfaces", CacheKey().add(snapshot.occluders),
+    return cached(snapshot, "lamps for glowing surfaces", emission_key(snapshot),
                   [&] { return make_lamps(snapshot, *glow); });
 }
 
 Snapshot with_mesh_lamps(Snapshot snapshot, const StyleSettings& style, bool wanted) {
     const auto found = wanted ? mesh_lamps(snapshot) : nullptr;
     if (!found || found->lamps.empty()) return snapshot;
-    const int casters = static_cast<int>(snapshot.casters.size());
-    snapshot.casters.push_back(found->casters);
+    const int before = static_cast<int>(snapshot.casters.size());
+    snapshot.casters.insert(snapshot.casters.end(), found->casters.begin(), found->casters.end());
     for (Light lamp : found->lamps) {
-        lamp.casters = casters, lamp.intensity *= style.tint;
+        lamp.casters += before, lamp.intensity *= style.tint;
         snapshot.lights.push_back(std::move(lamp));
     }
     return snapshot;

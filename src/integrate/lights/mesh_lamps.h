@@ -10,11 +10,11 @@ namespace tyndall {
 struct StyleSettings;
 
 struct MeshLamps {
-    // At most four, each at the power-weighted center of some meshes, with their directional intensity (including
-    // self-shadowing). They illuminate only fog.
-    std::vector<Light> lamps;
-    double reach = 0;  // meters; farther from a lamp its error is at most lamps_tolerance
-    CasterSet casters; // shadow casters for the lamps: all non-emissive surfaces
+    // At most four, or one for each set of casters that links name. Each is at the power-weighted center of some
+    // meshes, with their directional intensity (including self-shadowing), and illuminates only fog.
+    std::vector<Light> lamps;       // their casters are indices below
+    double reach = 0;               // meters; farther from a lamp its error is at most lamps_tolerance
+    std::vector<CasterSet> casters; // those of the surfaces that do not emit themselves
 };
 
 inline constexpr double lamps_tolerance = 0.1;

@@ -14,10 +14,16 @@ enum Use : uint32_t { use_distance = 0x4e54, use_triangle, use_place };
 
 constexpr double closest_share = 1e-5; // minimum equi-angular height, relative to the ray's length in fog
 
-// Emissive triangles, and the surfaces they belong to.
+// Emissive triangles, and the surfaces they belong to. Only light shadowed by one set of casters counts.
 struct GlowingSurfaces {
     std::shared_ptr<const EmissiveTriangles> triangles;
     std::shared_ptr<const Occluders> occluders;
+    std::vector<ivec2> links; // as in Snapshot
+    int casters = -1;
+
+    bool counts(const EmissivePoint& target) const {
+        return links.empty() || links[static_cast<size_t>(target.instance)].x == casters;
+    }
 };
 
 EmissivePoint pick_point(const GlowingSurfaces& light, const RayBatch& batch, size_t i, uint32_t k, uint32_t count) {
@@ -56,6 +62,7 @@ void append_ray(const GlowingSurfaces& light, const ScatteringFog& fog, const Ra
         const vec2 u = point_numbers(batch, i, k, pairs, use_distance);
         const auto append = [&](bool by_angle, uint32_t point) {
             const EmissivePoint target = pick_point(light, batch, i, point, 2 * pairs);
+            if (!light.counts(target)) return;
             const EquiAngularSampler angles = equi_angular_sampler(ray, pieces, dvec3(target.position), min_height);
             if (by_angle && angles.empty()) return;
             size_t piece = 0;
@@ -70,12 +77,12 @@ void append_ray(const GlowingSurfaces& light, const ScatteringFog& fog, const Ra
 
 void append_mesh_light(const Snapshot& snapshot, std::shared_ptr<const ScatteringFog> fog, bool shadows,
                        std::vector<PathLight>& lights) {
-    GlowingSurfaces light{emissive_triangles(snapshot), snapshot.occluders};
-    if (!light.triangles) return;
-    lights.push_back({shadows ? snapshot.occluders : nullptr, OtherLight::emission,
-                      [light = std::move(light), fog = std::move(fog)](
-                          const RayBatch& batch, size_t i, const FogSampler& seen, std::vector<ScatterPath>& paths) {
-                          append_ray(light, *fog, batch, i, seen, paths);
-                      }});
+    const auto triangles = emissive_triangles(snapshot);
+    if (!triangles) return;
+    for (const int casters : triangles->casters)
+        lights.push_back({shadows ? caster_surfaces(casters, snapshot) : nullptr, OtherLight::emission,
+                          [light = GlowingSurfaces{triangles, snapshot.occluders, snapshot.emission_links, casters},
+                           fog](const RayBatch& batch, size_t i, const FogSampler& seen,
+                                std::vector<ScatterPath>& paths) { append_ray(light, *fog, batch, i, seen, paths); }});
 }
 }

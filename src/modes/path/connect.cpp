@@ -89,13 +89,14 @@ Connection connection_to_light(const PathTracer& tracer, vec3 point, int index, 
     return c;
 }
 
-Connection connection_to_emitter(vec3 point, const EmissivePoint& target) {
+Connection connection_to_emitter(const Snapshot& snapshot, vec3 point, const EmissivePoint& target) {
     const vec3 offset = target.position - point;
     const float distance = glm::length(offset);
     Connection c;
     c.point = point;
     c.to_light = c.shadow = offset / distance;
     c.fog_length = distance, c.shadow_length = distance * shadow_reach<float>;
+    c.casters = emission_links(snapshot, target.instance).x;
     return c;
 }
 

@@ -30,7 +30,7 @@ struct Connection {
 Connection connection_to_light(const PathTracer& tracer, vec3 point, int light, vec3 to_light, vec2 u);
 
 // A connection to a point on an emissive surface.
-Connection connection_to_emitter(vec3 point, const EmissivePoint& target);
+Connection connection_to_emitter(const Snapshot& snapshot, vec3 point, const EmissivePoint& target);
 
 // A connection to a point in emissive fog.
 Connection connection_to_fire(vec3 point, const EmissionSample& target);

@@ -200,13 +200,13 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
     if (!state.tracer.emitters) return;
     const EmissivePoint target = sample_triangles(*state.tracer.emitters, *snapshot.occluders,
                                                   line.numbers(use_light).y, line.numbers(use_glow));
-    const Connection connection = connection_to_emitter(fog.position, target);
+    const Connection connection = connection_to_emitter(snapshot, fog.position, target);
     const float facing = std::abs(glm::dot(target.normal, connection.to_light));
     const float pdf = target.pdf * connection.fog_length * connection.fog_length / facing;
     const float cosine = glm::dot(connection.to_light, line.rest.direction);
+    const float found = is_linked(snapshot, target.instance) ? 0 : fog.phase_pdf(snapshot, cosine);
     if (facing > 0 && pdf > 0)
-        queue(state, line, connection,
-              fog.scattered(snapshot, cosine) * target.emission / (pdf + fog.phase_pdf(snapshot, cosine)), in_fog);
+        queue(state, line, connection, fog.scattered(snapshot, cosine) * target.emission / (pdf + found), in_fog);
 }
 
 // If the path collides with fog on this segment, gathers light there and scatters the path.

@@ -65,14 +65,15 @@ void gather_at_surface(const PathState& state, Segment& line, const SurfacePoint
     if (!state.tracer.emitters) return;
     const EmissivePoint target = sample_triangles(*state.tracer.emitters, *state.snapshot.occluders,
                                                   line.numbers(use_surface_light).y, line.numbers(use_surface_glow));
-    Connection connection = connection_to_emitter(surface.position, target);
+    if (!is_lit_by_emitter(state.snapshot, target.instance, surface.instance)) return;
+    Connection connection = connection_to_emitter(state.snapshot, surface.position, target);
     connection.face_normal = surface.face_normal;
     const float cosine = glm::dot(surface.normal, connection.to_light),
                 facing = std::abs(glm::dot(target.normal, connection.to_light));
     const float pdf = target.pdf * connection.fog_length * connection.fog_length / facing;
+    const float found = is_linked(state.snapshot, target.instance) ? 0 : cosine / pi;
     if (cosine > 0 && facing > 0 && pdf > 0)
-        queue(state, line, connection, reflected * target.emission * (cosine / (pdf + cosine / pi)),
-              line.vertex.in_fog);
+        queue(state, line, connection, reflected * target.emission * (cosine / (pdf + found)), line.vertex.in_fog);
 }
 
 // Lambertian reflection: directions are sampled by their cosine, so that the weight is the base color.
@@ -235,8 +236,10 @@ void hit_surface(const PathState& state, Segment& line, const SurfacePoint& surf
     const float share = line.transmittance * surface.alpha;
     const bool holdout = state.order == 0 && is_matte(state.snapshot, instance); // seen by the camera
     if (holdout) state.results[line.vertex.lane].holdout += share;
-    // The eye sees emissive surfaces even if they illuminate nothing.
-    if (!holdout && (state.tracer.surfaces_emit || state.order == 0) && max_component(surface.emission) > 0) {
+    // The eye sees emissive surfaces even if they illuminate nothing. Linked ones light others only by connections,
+    // which know whom they connect.
+    const bool found = state.order == 0 || (state.tracer.surfaces_emit && !is_linked(state.snapshot, instance));
+    if (!holdout && found && max_component(surface.emission) > 0) {
         const float aimed = line.vertex.pdf > 0 ? target_pdf(state.tracer, line, surface, instance, triangle) : 0;
         const float weight = aimed > 0 ? line.vertex.pdf / (line.vertex.pdf + aimed) : 1;
         add_light(state, line, surface.emission * (share * weight), OtherLight::emission, line.vertex.in_fog);

@@ -124,6 +124,11 @@ float line_transmittance(const PathState& state, Segment& line, Interval<float> 
 // Queues a connection that contributes `light` times the path's throughput if nothing is in its way.
 void queue(const PathState& state, Segment& line, Connection connection, vec3 light, bool in_fog);
 
+// Whether links limit what an instance's light reaches or which surfaces shadow it.
+inline bool is_linked(const Snapshot& snapshot, int instance) {
+    return emission_links(snapshot, instance) != ivec2(-1);
+}
+
 // Samples a point in emissive fog for a connection.
 EmissionSample pick_fire(const PathState& state, const Segment& line);
 

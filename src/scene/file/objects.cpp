@@ -52,23 +52,6 @@ std::vector<int> instances_named(const Scene& scene, const std::string& name) {
     return found;
 }
 
-void read_objects(const Field& root, Scene& scene) {
-    const Field objects = root.member("objects");
-    if (!objects) return;
-    if (!root.member("gltf")) refuse(objects, "has no effect without a glTF");
-    std::vector<std::string> known;
-    for (size_t i = 0; i < objects.json->items.size(); ++i) {
-        const Field object = objects.item(i), name = object.member("name");
-        if (std::ranges::count(known, name.json->string)) refuse(name, "another object already has this name");
-        known.push_back(name.json->string);
-        for (const int index : instances_of(name, scene)) {
-            Instance& instance = scene.instances[static_cast<size_t>(index)];
-            if (object.member("casts_shadows")) instance.casts_shadows = object.json->boolean_or("casts_shadows", true);
-            if (object.member("matte")) instance.matte = object.json->boolean_or("matte", false);
-        }
-    }
-}
-
 std::vector<bool> read_link(const Field& field, const Scene& scene) {
     const Field include = field.member("include"), exclude = field.member("exclude");
     if (static_cast<bool>(include) == static_cast<bool>(exclude)) refuse(field, "needs either include or exclude");
@@ -78,5 +61,44 @@ std::vector<bool> read_link(const Field& field, const Scene& scene) {
         for (const int instance : instances_of(names.item(i), scene))
             link[static_cast<size_t>(instance)] = static_cast<bool>(include);
     return link;
+}
+
+namespace {
+// Links of the light that an object emits.
+void read_links(const Field& object, const std::vector<int>& instances, Scene& scene) {
+    for (const char* key : {"light_link", "shadow_link"}) {
+        const Field field = object.member(key);
+        if (!field) continue;
+        const std::vector<bool> link = read_link(field, scene);
+        bool emits = false;
+        for (const int index : instances) {
+            Instance& instance = scene.instances[static_cast<size_t>(index)];
+            const int material = scene.meshes[static_cast<size_t>(instance.mesh)].material;
+            if (material < 0 || !can_emit(scene.materials[static_cast<size_t>(material)])) continue;
+            (std::string_view(key) == "light_link" ? instance.lit : instance.casters) = link;
+            emits = true;
+        }
+        if (!emits) refuse(field, "links the light that the object emits, but it emits none");
+    }
+}
+}
+
+void read_objects(const Field& root, Scene& scene) {
+    const Field objects = root.member("objects");
+    if (!objects) return;
+    if (!root.member("gltf")) refuse(objects, "has no effect without a glTF");
+    std::vector<std::string> known;
+    for (size_t i = 0; i < objects.json->items.size(); ++i) {
+        const Field object = objects.item(i), name = object.member("name");
+        if (std::ranges::count(known, name.json->string)) refuse(name, "another object already has this name");
+        known.push_back(name.json->string);
+        const std::vector<int> instances = instances_of(name, scene);
+        for (const int index : instances) {
+            Instance& instance = scene.instances[static_cast<size_t>(index)];
+            if (object.member("casts_shadows")) instance.casts_shadows = object.json->boolean_or("casts_shadows", true);
+            if (object.member("matte")) instance.matte = object.json->boolean_or("matte", false);
+        }
+        read_links(object, instances, scene);
+    }
 }
 }

@@ -48,13 +48,18 @@ void add_fire(const EmissiveBricks& fire, const Snapshot& snapshot, std::span<co
         add_unblocked(to, snapshot.occluders.get(), snapshot.media, points, scale, radiance);
 }
 
-void add_surfaces(const EmissiveTriangles& emissive, const Snapshot& snapshot, std::span<const SurfacePoint> points,
-                  std::span<const vec2> pairs, float scale, std::span<vec3> radiance) {
+// The light of surfaces that the same set of casters shadows.
+void add_surfaces(const EmissiveTriangles& emissive, int casters, const Snapshot& snapshot,
+                  std::span<const SurfacePoint> points, std::span<const vec2> pairs, float scale,
+                  std::span<vec3> radiance) {
     SurfaceRays picked;
     for (size_t i = 0; i < points.size(); ++i) {
         const SurfacePoint& point = points[i];
         const EmissivePoint target =
             sample_triangles(emissive, *snapshot.occluders, numbers_after(pairs[i]).next(), pairs[i]);
+        if (emission_links(snapshot, target.instance).x != casters ||
+            !is_lit_by_emitter(snapshot, target.instance, point.instance))
+            continue;
         const vec3 offset = target.position - point.position;
         const float away = glm::length(offset), cosine = away > 0 ? glm::dot(point.normal, offset) / away : 0;
         if (!(cosine > 0)) continue;
@@ -62,7 +67,7 @@ void add_surfaces(const EmissiveTriangles& emissive, const Snapshot& snapshot, s
         const float seen = cosine * std::abs(glm::dot(target.normal, direction)) / (target.pdf * away * away);
         picked.set(i, point, direction, away * shadow_reach<float>, point.base_color / pi * target.emission * seen);
     }
-    add_unblocked(picked, snapshot.occluders.get(), snapshot.media, points, scale, radiance);
+    add_unblocked(picked, caster_surfaces(casters, snapshot).get(), snapshot.media, points, scale, radiance);
 }
 }
 
@@ -78,7 +83,9 @@ void add_emitted_light(const Emitters& emitters, const Snapshot& snapshot, std::
     for (size_t k = 0; k < count; ++k) {
         for (size_t i = 0; i < points.size(); ++i) pairs[i] = u[i * count + k];
         if (emitters.fire) add_fire(*emitters.fire, snapshot, points, pairs, scale, radiance);
-        if (emitters.surfaces) add_surfaces(*emitters.surfaces, snapshot, points, pairs, scale, radiance);
+        if (!emitters.surfaces) continue;
+        for (const int casters : emitters.surfaces->casters)
+            add_surfaces(*emitters.surfaces, casters, snapshot, points, pairs, scale, radiance);
     }
 }
 }

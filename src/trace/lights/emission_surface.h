@@ -21,7 +21,7 @@ struct Emitters {
 Emitters emitters_of(const Snapshot& snapshot);
 
 // Adds the emitters' light to the radiance leaving up to 16 points, as in shade_surfaces(): attenuated by fog and
-// shadowed by all surfaces. Each sample pair chooses a point on an emissive surface; and in emissive fog a point by
+// shadowed by surfaces. Each sample pair chooses a point on an emissive surface; and in emissive fog a point by
 // power, and a cosine-distributed direction with points by brightness along it, combined by the balance heuristic.
 void add_emitted_light(const Emitters& emitters, const Snapshot& snapshot, std::span<const SurfacePoint> points,
                        std::span<const vec2> u, std::span<vec3> radiance);

@@ -41,6 +41,8 @@ void add_instance(const Snapshot& snapshot, int index, EmissiveTriangles& emissi
         places[i] = static_cast<int>(emissive.triangles.size());
         emissive.triangles.push_back(triangle);
     }
+    const int casters = emission_links(snapshot, index).x;
+    if (std::ranges::find(emissive.casters, casters) == emissive.casters.end()) emissive.casters.push_back(casters);
 }
 
 EmissiveTriangles make_emissive_triangles(const Snapshot& snapshot) {
@@ -56,11 +58,18 @@ EmissiveTriangles make_emissive_triangles(const Snapshot& snapshot) {
 }
 }
 
+CacheKey emission_key(const Snapshot& snapshot) {
+    CacheKey key;
+    key.add(snapshot.occluders);
+    for (const ivec2 links : snapshot.emission_links) key.add(links);
+    return key;
+}
+
 std::shared_ptr<const EmissiveTriangles> emissive_triangles(const Snapshot& snapshot) {
     if (!snapshot.scene || !snapshot.occluders) return nullptr;
     const Scene& scene = *snapshot.scene;
     if (std::ranges::none_of(scene.meshes, [&](const Mesh& mesh) { return glows(scene, mesh); })) return nullptr;
-    auto emissive = cached(snapshot, "emissive triangles", CacheKey().add(snapshot.occluders),
+    auto emissive = cached(snapshot, "emissive triangles", emission_key(snapshot),
                            [&] { return make_emissive_triangles(snapshot); });
     return emissive->triangles.empty() ? nullptr : emissive;
 }

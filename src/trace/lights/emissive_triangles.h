@@ -7,6 +7,7 @@
 
 namespace tyndall {
 class Occluders;
+struct CacheKey;
 struct Snapshot;
 
 struct EmissiveTriangle {
@@ -19,8 +20,12 @@ struct EmissiveTriangle {
 struct EmissiveTriangles {
     std::vector<EmissiveTriangle> triangles;
     std::vector<double> cumulative;         // probability of the triangles up to and including each
+    std::vector<int> casters;               // distinct sets that shadow their light; -1 = all surfaces
     std::vector<std::vector<int>> by_shape; // [instance][triangle] -> index above, -1 or empty = none
 };
+
+// Key of what emissive surfaces and their shadows are made from.
+CacheKey emission_key(const Snapshot& snapshot);
 
 // The triangles with an emissive material; null if there are none. Cached while surfaces do not move.
 std::shared_ptr<const EmissiveTriangles> emissive_triangles(const Snapshot& snapshot);

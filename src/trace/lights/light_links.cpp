@@ -49,8 +49,7 @@ LightLinks light_links(const Scene& scene, double seconds, const Snapshot* previ
     const bool all_cast = std::ranges::all_of(scene.instances, &Instance::casts_shadows);
     const auto linked = [](const auto& light) { return !light.lit.empty() || !light.casters.empty(); };
     LightLinks links;
-    const auto sets_of = [&](const auto& light) {
-        const std::vector<bool> casters = without_shadowless(scene, light.casters, all_cast);
+    const auto sets_of = [&](const auto& light, const std::vector<bool>& casters) {
         const int shadowed = number_of(
             casters, links.casters, [&](const CasterSet& set) { return set.instances == casters; },
             [&] {
@@ -62,9 +61,12 @@ LightLinks light_links(const Scene& scene, double seconds, const Snapshot* previ
         return ivec2(shadowed, lit);
     };
     if (!all_cast || std::ranges::any_of(scene.lights, linked))
-        for (const LightSource& light : scene.lights) links.of_lights.push_back(sets_of(light));
-    if (scene.environment && (!all_cast || linked(*scene.environment)))
-        links.of_environment = sets_of(*scene.environment);
+        for (const LightSource& light : scene.lights)
+            links.of_lights.push_back(sets_of(light, without_shadowless(scene, light.casters, all_cast)));
+    if (const auto& sky = scene.environment; sky && (!all_cast || linked(*sky)))
+        links.of_environment = sets_of(*sky, without_shadowless(scene, sky->casters, all_cast));
+    if (std::ranges::any_of(scene.instances, linked))
+        for (const Instance& one : scene.instances) links.of_instances.push_back(sets_of(one, one.casters));
     return links;
 }
 
@@ -99,6 +101,18 @@ bool is_lit(const Light& light, const Snapshot& snapshot, int instance) { return
 
 bool is_lit(const Environment& environment, const Snapshot& snapshot, int instance) {
     return is_in(environment.lit, snapshot, instance);
+}
+
+const std::shared_ptr<const Occluders>& caster_surfaces(int set, const Snapshot& snapshot) {
+    return surfaces_in(set, true, snapshot);
+}
+
+ivec2 emission_links(const Snapshot& snapshot, int instance) {
+    return snapshot.emission_links.empty() ? ivec2(-1) : snapshot.emission_links[static_cast<size_t>(instance)];
+}
+
+bool is_lit_by_emitter(const Snapshot& snapshot, int emitter, int instance) {
+    return is_in(emission_links(snapshot, emitter).y, snapshot, instance);
 }
 
 bool has_alpha_shadows(const Snapshot& snapshot) {

@@ -16,6 +16,7 @@ struct LightLinks {
     std::vector<std::vector<bool>> lit;
     std::vector<ivec2> of_lights;
     ivec2 of_environment{-1};
+    std::vector<ivec2> of_instances; // likewise, of the light that each instance emits
 };
 
 // Shares surfaces that did not move with `previous` (may be null). Throws Error.

@@ -75,6 +75,28 @@ TEST(Objects, LinksOfLights) {
     EXPECT_EQ(light(R"("shadow_link": {"include": []})").casters, (Flags{false, false, false}));
 }
 
+TEST(Objects, LinksOfEmissiveObjects) {
+    const TempFolder folder;
+    GltfBuilder gltf = triangle_gltf();
+    const std::string primitive = R"({"primitives":[{"attributes":{"POSITION":0},"indices":1)";
+    gltf.members["materials"] = R"([{"emissiveFactor":[1,1,1]}])";
+    gltf.members["meshes"] = "[" + primitive + R"(,"material":0}]},)" + primitive + "}]}]";
+    gltf.members["nodes"] = R"([{"name":"Neon","mesh":0},{"name":"Wall","mesh":1}])";
+    gltf.members["scenes"] = R"([{"nodes":[0,1]}])";
+    folder.put("room.gltf", gltf.json());
+    const Scene scene = loaded(
+        folder,
+        R"(}], "objects": [{"name": "Neon", "light_link": {"exclude": ["Wall"]}, "shadow_link": {"include": ["Wall"]}}])");
+    EXPECT_EQ(scene.instances[0].lit, (Flags{true, false}));
+    EXPECT_EQ(scene.instances[0].casters, (Flags{false, true}));
+    EXPECT_TRUE(scene.instances[1].lit.empty());
+
+    const LoadResult answer = load(folder.put(
+        "scene.json", scene_text(R"(}], "objects": [{"name": "Wall", "light_link": {"exclude": ["Neon"]}}])")));
+    expect_refusal(answer, "/objects/0/light_link");
+    EXPECT_NE(answer.message.find("emits none"), std::string::npos) << answer.message;
+}
+
 TEST(Objects, NamesThatAreNotThereAreAnswered) {
     const TempFolder folder;
     put_room(folder);
