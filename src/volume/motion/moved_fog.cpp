@@ -128,7 +128,7 @@ struct Row {
 
 // Weights are those of cubic convolution (Keys 1981). Points outside are moved to the layer of zeros there.
 Row row_at(float local, int bricks) {
-    const float inside = glm::clamp(local, 0.0f, static_cast<float>(8 * bricks - 1));
+    const float inside = std::min(local > 0 ? local : 0.0f, static_cast<float>(8 * bricks - 1)); // also if not a number
     const auto first = static_cast<int>(inside);
     const float t = inside - static_cast<float>(first);
     Row row{{},

@@ -10,6 +10,7 @@
 namespace tyndall {
 namespace {
 constexpr float min_share = 1e-3f; // minimum share of the interpolation weight on known voxels
+constexpr size_t joint_stride = 9 * 9 * 9, max_joint_bytes = size_t{1} << 29;
 
 // Smallest and largest known value; `volume` and `known` have the same leaves and tiles.
 Interval<float> range_of(const SparseVolume& volume, const SparseVolume& known) {
@@ -41,12 +42,8 @@ std::shared_ptr<const BrickPool> placed(const BrickPool& pool, const dmat4& inde
     place(*moved, index_to_world);
     return moved;
 }
-}
 
-namespace {
-constexpr size_t joint_stride = 9 * 9 * 9;
-
-// Null unless all three components are known at the same voxels.
+// Null unless all three components are known at the same voxels, or if they would take more than half a gigabyte.
 std::shared_ptr<const JointBricks> joint_bricks(const VelocityField& field) {
     if (field.any) return nullptr;
     for (size_t c = 0; c < 3; ++c)
@@ -64,6 +61,7 @@ std::shared_ptr<const JointBricks> joint_bricks(const VelocityField& field) {
         if (filled) cells.push_back(known->low + 8 * cell);
         joint->index.push_back(filled ? static_cast<int32_t>(cells.size()) : 0);
     });
+    if (cells.size() * joint_stride * sizeof(vec4) > max_joint_bytes) return nullptr;
     joint->values.resize(cells.size() * joint_stride);
     parallel_ranges(static_cast<int64_t>(cells.size()), 16, [&](int64_t begin, int64_t end) {
         for (auto n = static_cast<size_t>(begin); n < static_cast<size_t>(end); ++n)
@@ -118,7 +116,9 @@ LocalVelocity::LocalVelocity(const VelocityField& field, const dmat4& index_to_w
 
 vec4 LocalVelocity::joint_at(vec3 point) const {
     const BrickPool& pool = *known_[0];
-    const vec3 local = glm::clamp(local_point(pool, point), vec3(0), 8.0f * vec3(pool.size) - 1.0f);
+    vec3 local = local_point(pool, point);
+    for (int axis = 0; axis < 3; ++axis) // not a number becomes 0
+        local[axis] = std::min(local[axis] > 0 ? local[axis] : 0.0f, 8.0f * static_cast<float>(pool.size[axis]) - 1);
     const ivec3 cell(local), brick = cell / 8, voxel = cell % 8;
     const int32_t id = joint_->index[static_cast<size_t>((brick.x * pool.size.y + brick.y) * pool.size.z + brick.z)];
     if (id == 0) return vec4(0);

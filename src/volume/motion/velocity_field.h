@@ -21,7 +21,7 @@ struct VelocityField {
     std::array<std::shared_ptr<const BrickPool>, 3> known; // 1 at its known voxels; both null: 0 wherever others are
     std::shared_ptr<const BrickPool> any;                  // 1 where at least one is known, the others 0; null: ...
     dmat4 any_to_world{1};                                 // ... only where all are
-    std::shared_ptr<const JointBricks> joint;              // null if the components have voxels of their own each
+    std::shared_ptr<const JointBricks> joint;              // null if components have voxels of their own, or too many
     std::array<dmat4, 3> index_to_world{dmat4(1), dmat4(1), dmat4(1)};
     vec3 low{0}, range{0};
     float fastest = 0; // upper bound of the speed; 0 = nothing moves

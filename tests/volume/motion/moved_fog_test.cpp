@@ -118,6 +118,22 @@ TEST(MovedFog, WholeVoxelsKeepTheirBits) {
     EXPECT_EQ(testing::value_at(moved, {-9, 3, 0}), 0);
 }
 
+// Components with voxels of their own are looked up one by one, others at once.
+TEST(MovedFog, OneLookUpGivesTheVelocityOfThree) {
+    const auto swirl = [](vec3 p) { return vec3(std::sin(p.y), 2 * std::cos(p.z), 0.3f * p.x); };
+    const VelocityField together = field_in({-5, -9, 2}, {20, 14, 19}, swirl);
+    VelocityField apart = together;
+    apart.joint = nullptr;
+    ASSERT_TRUE(together.joint);
+    const LocalVelocity one(together, dmat4(1)), three(apart, dmat4(1));
+    for (int i = 0; i < 1000; ++i) { // beyond the known voxels as well
+        const vec3 point = vec3(-7, -11, 0) + vec3(i % 10, i / 10 % 10, i / 100) * vec3(3.13f, 2.91f, 2.37f);
+        vec3 a(0), b(0);
+        ASSERT_EQ(one.at(point, a), three.at(point, b)) << i;
+        ASSERT_LT(glm::distance(a, b), 1e-4f) << i;
+    }
+}
+
 // Lengths of the file, whatever its voxels: turned and not cubic here.
 TEST(MovedFog, VelocitiesAreInTheFilesSpace) {
     const dmat4 turned =
