@@ -111,6 +111,11 @@ void make_forecast(double more, TargetRounds& rounds, const FrameOptions& option
     if (options.forecast && !as_before) options.forecast(seconds);
 }
 
+// Whether the first forecast waits for a round of `work`, which is short and shows how fast noise falls.
+bool waits_for(double work, const TargetRounds& rounds, const FrameStats& stats) {
+    return work * rounds.work_seconds < soon && stats.forecast_seconds == 0;
+}
+
 // The image that the rounds so far add up to.
 struct ImageSoFar {
     Layers layers;
@@ -164,7 +169,7 @@ double render_rounds(TargetRounds& rounds, const Rendering& rendering, double wo
         }
         if (begin_allotment(rounds, image.layers, stats)) rays = 0;
         work = next_round(rounds, stats);
-        if (work == 0 || rounds.goal.error == 0) continue;
+        if (work == 0 || rounds.goal.error == 0 || (rounds.done == 0 && waits_for(work, rounds, stats))) continue;
         const double more = (rounds.expected - rounds.done) * rounds.work_seconds;
         make_forecast(more + rounds.check_seconds, rounds, rendering.options, stats);
         work = next_round(rounds, stats); // within the limit that the forecast may have set
@@ -179,7 +184,7 @@ bool render_until_check(TargetRounds& rounds, const Rendering& rendering, ImageS
     const double work = scouted ? begin_with_scout(rounds, image.stats) : first_round(rounds);
     if (rounds.goal.error > 0 && has_integrator(rendering.mode)) {
         const double ahead = seconds_ahead(rounds, work);
-        const bool wait = ahead < infinity && work * rounds.work_seconds < soon && image.stats.forecast_seconds == 0;
+        const bool wait = ahead < infinity && waits_for(work, rounds, image.stats);
         if (!wait) make_forecast(ahead, rounds, rendering.options, image.stats);
     }
     return render_rounds(rounds, rendering, work, rounds.checks_early() ? 1 : max_rounds, image) == 0;
