@@ -68,9 +68,7 @@ bool scatters_light(const Medium& medium) {
 
 std::vector<Medium> thickest_media(const Snapshot& snapshot) {
     std::vector<Medium> media = snapshot.media;
-    for (const std::vector<Medium>& channel : snapshot.channel_media)
-        for (size_t m = 0; m < channel.size(); ++m)
-            media[m].optics.extinction = glm::max(media[m].optics.extinction, channel[m].optics.extinction);
+    for (Medium& medium : media) medium.optics.extinction *= std::max(1.0f, max_component(medium.optics.channels));
     return media;
 }
 

@@ -127,12 +127,17 @@ Snapshot& Snapshot::operator=(const Snapshot&) = default;
 Snapshot& Snapshot::operator=(Snapshot&&) noexcept = default;
 Snapshot::~Snapshot() = default;
 
-bool is_chromatic(const Snapshot& snapshot) { return !snapshot.channel_media[0].empty(); }
+bool is_chromatic(const Snapshot& snapshot) {
+    return std::ranges::any_of(snapshot.media, [](const Medium& medium) { return !is_gray(medium); });
+}
 
 Snapshot channel_of(const Snapshot& snapshot, int channel) {
     Snapshot result = snapshot;
-    result.media = snapshot.channel_media[static_cast<size_t>(channel)];
-    result.channel_media = {};
+    for (Medium& medium : result.media) {
+        Optics& optics = medium.optics;
+        const float share = optics.channels[static_cast<glm::length_t>(channel)];
+        optics.extinction = glm::max(share * optics.extinction, min_extinction), optics.channels = vec3(1);
+    }
     return result;
 }
 

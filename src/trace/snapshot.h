@@ -54,10 +54,7 @@ struct Snapshot {
     double seconds = 0;
     int frame = 0;
     std::vector<Light> lights; // with non-zero intensity; area lights come last
-    std::vector<Medium> media; // those that attenuate or emit; extinction is non-zero and the same in all channels
-    // The media as red, green and blue light see them, if any medium's extinction differs between channels (`media`
-    // then holds the mean); else empty.
-    std::array<std::vector<Medium>, 3> channel_media;
+    std::vector<Medium> media; // those that attenuate or emit; extinction is non-zero
     vec3 ambient{0};
     BackgroundState background;
     std::shared_ptr<const Environment> environment; // null = none

@@ -35,7 +35,7 @@ struct Emission {
 };
 
 struct Optics {
-    vec3 extinction{0.1f}; // 1/m at density 1; equal in all channels, enforced by the loaders
+    vec3 extinction{0.1f}; // 1/m at density 1; equal in all channels: their mean
     vec3 albedo{0.95f};    // single-scattering albedo, 0..1
     Phase phase;
     Emission emission;
@@ -43,6 +43,8 @@ struct Optics {
     // For a spatially varying albedo: base_albedo · albedo_factor(field, point), and `albedo` is its mean.
     std::shared_ptr<const AlbedoField> albedo_field{};
     vec3 base_albedo{1};
+
+    vec3 channels{1}; // extinction of each channel relative to `extinction`, never 0; not 1 = chromatic
 };
 
 // True for media that emit but neither absorb nor scatter.
@@ -50,7 +52,7 @@ inline bool only_emits(const Optics& optics) { return optics.emission.field != n
 
 vec3 albedo_at(const Optics& optics, vec3 point);
 
-// The scalar extinction, valid because all media are gray.
+// The scalar extinction; in chromatic fog, the mean of the channels.
 inline float gray_extinction(const Optics& optics) {
     assert(optics.extinction.x == optics.extinction.y && optics.extinction.x == optics.extinction.z);
     return optics.extinction.x;
@@ -67,9 +69,12 @@ struct Medium {
     Optics optics;
     Box world_bounds = everywhere();
 
-    // Upper bound of the extinction anywhere in the medium, 1/m.
+    // Upper bound of the (mean) extinction anywhere in the medium, 1/m.
     float majorant() const;
 };
+
+// Whether extinction is the same in all channels.
+inline bool is_gray(const Medium& medium) { return medium.optics.channels == vec3(1); }
 
 // Size of the finest detail of the brick media, meters: a noise's last octave spans several voxels.
 float fog_detail(std::span<const Medium> media);

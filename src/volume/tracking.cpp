@@ -5,6 +5,9 @@
 #include "volume/bricks/half.h"
 #include "volume/medium.h"
 
+#include <algorithm>
+#include <array>
+
 namespace tyndall {
 namespace {
 // A segment of fog along a ray, with bounds of its density.
@@ -77,55 +80,123 @@ template<class Visit> void walk_fog(const Medium& medium, const Ray& ray, Interv
 }
 
 double free_depth(float u) { return -std::log1p(-static_cast<double>(u)); }
-}
 
-float collision_distance(const Medium& medium, const Ray& ray, Interval<float> range, float first, RandomStream& random,
-                         int& lookups) {
-    double left = free_depth(first), found = infinity; // majorant optical depth to the next tentative collision
+// A walk from one tentative collision to the next, up to a real one.
+struct Walk {
+    double distance = infinity; // to the real collision
+    int tentative = 0;          // number of tentative collisions, real ones included
+    double depth = 0;           // optical depth of the majorants up to the end, for an extinction of 1
+};
+
+Walk track(const Medium& medium, double extinction, const Ray& ray, Interval<float> range, float first,
+           RandomStream& random, int& lookups) {
+    Walk walk;
+    double left = free_depth(first); // majorant optical depth to the next tentative collision
     walk_fog(medium, ray, range, [&](const Fog& fog, const auto& density) {
-        const double majorant = static_cast<double>(gray_extinction(medium.optics)) * fog.majorant;
+        const double majorant = extinction * fog.majorant;
         for (double t = fog.low; majorant > 0;) {
             const double step = left / majorant;
             if (t + step >= fog.high) {
-                left -= majorant * (fog.high - t);
+                left -= majorant * (fog.high - t), walk.depth += fog.majorant * (fog.high - t);
                 break;
             }
-            t += step;
-            if (fog.even() || (++lookups, random.next() * fog.majorant < density(t))) return found = t, false;
+            t += step, ++walk.tentative, walk.depth += fog.majorant * step;
+            if (fog.even() || (++lookups, random.next() * fog.majorant < density(t))) return walk.distance = t, false;
             left = free_depth(random.next());
         }
         return true;
     });
-    return static_cast<float>(found);
+    return walk;
 }
 
-float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> range, RandomStream& random,
-                          int& lookups) {
-    if (medium.density.kind != DensityKind::bricks)
-        return static_cast<float>(std::exp(-optical_depth(medium, {ray.at(range.low), ray.direction, range.length()})));
+// Residual ratio tracking in N channels, of which the transmittance starts at the given values: where one is small or
+// 0, less effort or none is spent on it.
+template<size_t N> using Channels = std::array<double, N>;
+template<size_t N>
+Channels<N> ratio_track(const Medium& medium, const Channels<N>& extinction, Channels<N> transmittance, const Ray& ray,
+                        Interval<float> range, RandomStream& random, int& lookups) {
     constexpr double small = 0.1, often = 4;
-    const double extinction = gray_extinction(medium.optics);
-    double transmittance = 1, certain = 0; // transmittance so far, and control optical depth not yet applied to it
+    Channels<N> certain{}; // control optical depth not yet applied
     double left = free_depth(random.next());
     walk_brick_fog(*medium.density.bricks, ray, {range.low, range.high}, [&](const Fog& fog, const auto& density) {
-        certain += extinction * fog.minimum * (fog.high - fog.low);
-        if (certain > small) transmittance *= std::exp(-certain), certain = 0;
+        for (size_t c = 0; c < N; ++c) {
+            certain[c] += extinction[c] * fog.minimum * (fog.high - fog.low);
+            if (certain[c] > small) transmittance[c] *= std::exp(-certain[c]), certain[c] = 0;
+        }
         // Variance scales with the remaining light, so the optimal rate of lookups is proportional to it.
-        const double varying = extinction * (fog.majorant - fog.minimum);
-        for (double t = fog.low; varying > 0;) {
-            const double rate = std::max(1.0, often * transmittance) * varying, step = left / rate;
+        const auto best_rate = [&] {
+            double rate = 0;
+            for (size_t c = 0; c < N; ++c)
+                if (transmittance[c] > 0)
+                    rate = std::max(rate, std::max(1.0, often * transmittance[c]) *
+                                              (extinction[c] * (fog.majorant - fog.minimum)));
+            return rate;
+        };
+        double rate = best_rate();
+        for (double t = fog.low; rate > 0; rate = best_rate()) {
+            const double step = left / rate;
             if (t + step >= fog.high) {
                 left -= rate * (fog.high - t);
                 break;
             }
             t += step, ++lookups;
-            transmittance *= std::clamp(1 - extinction * (density(t) - fog.minimum) / rate, 0.0, 1.0);
+            const double residual = density(t) - fog.minimum;
+            for (double& share : transmittance)
+                share *= std::clamp(1 - extinction[&share - transmittance.data()] * residual / rate, 0.0, 1.0);
             left = free_depth(random.next());
-            if (transmittance < small) transmittance = random.next() * small < transmittance ? small : 0;
-            if (transmittance == 0) return false;
+            if (std::ranges::any_of(transmittance, [&](double share) { return share < small; })) {
+                const double survival = random.next() * small;
+                for (double& share : transmittance)
+                    if (share < small) share = survival < share ? small : 0;
+            }
         }
-        return true;
+        return std::ranges::any_of(transmittance, [](double share) { return share > 0; });
     });
-    return static_cast<float>(transmittance * std::exp(-certain));
+    for (size_t c = 0; c < N; ++c) transmittance[c] *= std::exp(-certain[c]);
+    return transmittance;
+}
+
+dvec3 channel_extinctions(const Medium& medium) {
+    return double{gray_extinction(medium.optics)} * dvec3(medium.optics.channels);
+}
+
+double depth_on(const Medium& medium, const Ray& ray, Interval<float> range) {
+    return optical_depth(medium, {ray.at(range.low), ray.direction, range.length()});
+}
+}
+
+float collision_distance(const Medium& medium, const Ray& ray, Interval<float> range, float first, RandomStream& random,
+                         int& lookups) {
+    const double extinction = gray_extinction(medium.optics);
+    return static_cast<float>(track(medium, extinction, ray, range, first, random, lookups).distance);
+}
+
+float collision_distance(const Medium& medium, int channel, const Ray& ray, Interval<float> range, float first,
+                         RandomStream& random, int& lookups, vec3& pdfs) {
+    if (is_gray(medium)) return collision_distance(medium, ray, range, first, random, lookups);
+    const dvec3 extinctions = channel_extinctions(medium);
+    const double own = extinctions[channel];
+    const Walk walk = track(medium, own, ray, range, first, random, lookups);
+    const dvec3 logarithms = double(walk.tentative) * glm::log(extinctions / own) - walk.depth * (extinctions - own);
+    pdfs *= vec3(glm::exp(logarithms - std::max({logarithms.x, logarithms.y, logarithms.z})));
+    return static_cast<float>(walk.distance);
+}
+
+float ratio_transmittance(const Medium& medium, const Ray& ray, Interval<float> range, RandomStream& random,
+                          int& lookups) {
+    if (medium.density.kind != DensityKind::bricks) return static_cast<float>(std::exp(-depth_on(medium, ray, range)));
+    const double extinction = gray_extinction(medium.optics);
+    return static_cast<float>(ratio_track<1>(medium, {extinction}, {1}, ray, range, random, lookups)[0]);
+}
+
+vec3 channel_transmittance(const Medium& medium, vec3 weights, const Ray& ray, Interval<float> range,
+                           RandomStream& random, int& lookups) {
+    if (is_gray(medium)) return vec3(ratio_transmittance(medium, ray, range, random, lookups));
+    const dvec3 e = channel_extinctions(medium);
+    if (medium.density.kind != DensityKind::bricks)
+        return vec3(glm::exp(-depth_on(medium, ray, range) / gray_extinction(medium.optics) * e));
+    const dvec3 w = dvec3(weights) / double{std::max(max_component(weights), 1e-37f)};
+    const auto [x, y, z] = ratio_track<3>(medium, {e.x, e.y, e.z}, {w.x, w.y, w.z}, ray, range, random, lookups);
+    return vec3(x > 0 ? x / w.x : 0, y > 0 ? y / w.y : 0, z > 0 ? z / w.z : 0);
 }
 }

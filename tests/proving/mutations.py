@@ -87,6 +87,8 @@ FAULTS = [
              "2.1 * std::numbers::pi / table.texels.x *", r"modes\.environment"),
     of_light("channels-swapped", "src/render/frame/channels.cpp", "to.tint[c] = from.transmittance", "to.tint[2 - c] = from.transmittance",
              r"render\.channels"),
+    of_light("channels-followed-by-one", "src/modes/path/vertex.h", "line.pdfs / mean_component(line.pdfs)", "1.0f + 0.0f * line.pdfs",
+             r"render\.channels"),
     of_light("shutter-late", "src/scene/shutter.cpp", "(k + 0.5) / count", "(k + 1.0) / count", r"scene\.shutter|render\.shutter"),
     of_light("lens-in-focus-everywhere", "src/scene/lens.cpp", "- off / camera.lens.focus;", "- 0.0f * off;",
              r"scene\.lens|modes\.lens|render\.lens_pictures"),

@@ -122,6 +122,74 @@ TEST(Tracking, StretchesOfARayMultiply) {
     EXPECT_LT(std::abs(mean.value() - std::exp(-optical_depth(c.medium, c.ray))), limit * mean.error());
 }
 
+const vec3 spectrum(2, 0.9f, 0.1f);
+
+// Where a channel has a low weight, few samples carry all of its light: the error cannot be less than that of rare
+// events.
+TEST(Tracking, RatioTrackingOfChannelsIsRightOnAverage) {
+    constexpr int count = 20000;
+    for (const vec3 weights : {vec3(1), vec3(0.01f, 3, 0.2f)})
+        for (Case& c : cases()) {
+            const double depth = optical_depth(c.medium, c.ray);
+            c.medium.optics.channels = spectrum;
+            Mean means[3];
+            for (uint32_t i = 0; i < count; ++i) {
+                RandomStream random{hash(i, 15u)};
+                int lookups = 0;
+                const vec3 share = channel_transmittance(c.medium, weights, c.ray, {0, c.ray.t_max}, random, lookups);
+                for (int k = 0; k < 3; ++k) means[k].add(share[k]);
+            }
+            for (int k = 0; k < 3; ++k) {
+                const double expected = std::exp(-depth * spectrum[k]),
+                             most = 0.1 * max_component(weights) / weights[k];
+                const double error = std::max(means[k].error(), most > 1 ? std::sqrt(expected * most / count) : 0);
+                EXPECT_LT(std::abs(means[k].value() - expected), limit * error + 1e-6) << c.name << k;
+            }
+        }
+}
+
+// Weighted by multiple importance sampling, paths that follow any channel are paths of each.
+TEST(Tracking, CollisionsOfOneChannelTellOfTheOthers) {
+    for (Case& c : cases())
+        for (const float share : {0.35f, 0.6f}) {
+            Ray part = c.ray;
+            part.t_max *= share;
+            const double depth = optical_depth(c.medium, part);
+            Medium medium = c.medium;
+            medium.optics.channels = spectrum;
+            Mean means[3];
+            for (uint32_t i = 0; i < 30000; ++i) {
+                RandomStream random{hash(i, 16u)};
+                int lookups = 0;
+                vec3 pdfs(1);
+                const float first = random.next();
+                const Interval<float> whole{0, c.ray.t_max};
+                const float found =
+                    collision_distance(medium, static_cast<int>(i % 3), c.ray, whole, first, random, lookups, pdfs);
+                const vec3 weights = pdfs / mean_component(pdfs);
+                for (int k = 0; k < 3; ++k) means[k].add(found < part.t_max ? weights[k] : 0.0f);
+            }
+            for (int k = 0; k < 3; ++k)
+                EXPECT_LT(std::abs(means[k].value() + std::expm1(-depth * spectrum[k])),
+                          limit * means[k].error() + 1e-6)
+                    << c.name << share << k;
+        }
+}
+
+TEST(Tracking, GrayFogIsTheSameInAllChannels) {
+    for (const Case& c : cases()) {
+        RandomStream random{4}, again{4};
+        int lookups = 0;
+        vec3 pdfs(1);
+        const Interval<float> whole{0, c.ray.t_max};
+        EXPECT_EQ(channel_transmittance(c.medium, vec3(1), c.ray, whole, random, lookups),
+                  vec3(ratio_transmittance(c.medium, c.ray, whole, again, lookups)));
+        EXPECT_EQ(collision_distance(c.medium, 2, c.ray, whole, 0.3f, random, lookups, pdfs),
+                  collision_distance(c.medium, c.ray, whole, 0.3f, again, lookups));
+        EXPECT_EQ(pdfs, vec3(1));
+    }
+}
+
 TEST(Tracking, EndlessFogEndsEveryRay) {
     RandomStream random{3};
     int lookups = 0;

@@ -94,7 +94,7 @@ void use_media(const std::vector<MediumSource>& media, StressScene& scene) {
     Scene only;
     only.media = media;
     Snapshot fog = make_snapshot(only, Moment{0, 0});
-    scene.snapshot.media = std::move(fog.media), scene.snapshot.channel_media = std::move(fog.channel_media);
+    scene.snapshot.media = std::move(fog.media);
     for (const Medium& medium : scene.snapshot.media)
         if (is_finite(medium.world_bounds.size())) scene.snapshot.bounds.grow(medium.world_bounds);
 }

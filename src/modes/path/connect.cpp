@@ -47,11 +47,12 @@ void connect_packet(const PathTracer& tracer, std::span<Connection> connections,
     find_visibility(tracer, connections, visibility);
     for (size_t i = 0; i < connections.size(); ++i) {
         Connection& c = connections[i];
-        float passing = visibility[i];
+        vec3 passing(visibility[i]);
         const Ray way{c.point, c.to_light, c.fog_length};
         for (const Medium& medium : tracer.snapshot.media)
-            if (passing > 0)
-                passing *= ratio_transmittance(medium, way, {0, c.fog_length}, c.random, results[c.lane].steps);
+            if (max_component(passing) > 0)
+                passing *= channel_transmittance(medium, c.light * passing, way, {0, c.fog_length}, c.random,
+                                                 results[c.lane].steps);
         const vec3 arriving = c.light * passing;
         (c.in_fog ? results[c.lane].radiance : results[c.lane].surface) += arriving;
         if (!c.in_fog || batch.parts.empty()) continue;

@@ -30,8 +30,8 @@ void gather_field(const PathState& state, Segment& line, size_t number) {
     ++lookups;
     if (!(max_component(hit.sample.emission) > 0)) return;
     const float colliding = collision_pdf(state.snapshot, hit.sample.position, lookups);
-    const float share = line.transmittance * line_transmittance(state, line, {0, hit.distance}) *
-                        fire_shares(line, hit.sample, hit.distance, colliding).picked;
+    const vec3 share = line.transmittance * line_transmittance(state, line, {0, hit.distance}) *
+                       fire_shares(line, hit.sample, hit.distance, colliding).picked;
     add_light(state, line, hit.sample.emission * (share * hit.inverse_pdf), OtherLight::emission,
               state.order == 0 || line.vertex.in_fog);
 }
@@ -54,15 +54,15 @@ float collision_pdf(const Snapshot& snapshot, vec3 position, int& lookups) {
 
 void gather_emission(const PathState& state, Segment& line) {
     const size_t fields = state.tracer.fire ? state.tracer.fire->fields.size() : 0;
-    for (size_t m = 0; m < fields && line.transmittance > 0; ++m) gather_field(state, line, m);
+    for (size_t m = 0; m < fields && line.lit(); ++m) gather_field(state, line, m);
     for (const Medium& medium : state.snapshot.media) {
         const vec3 emission = medium.optics.emission.radiance;
         const Interval<float> range = thin_range(line, medium);
-        if (range.empty() || !(max_component(emission) > 0) || !(line.transmittance > 0)) continue;
+        if (range.empty() || !(max_component(emission) > 0) || !line.lit()) continue;
         const float distance = range.low + line.numbers(use_emission).x * range.length();
         const float density = density_at(medium, line.rest.at(distance));
         if (!(density > 0)) continue;
-        const float share = line.transmittance * line_transmittance(state, line, {0, distance});
+        const vec3 share = line.transmittance * line_transmittance(state, line, {0, distance});
         add_light(state, line, emission * (share * density * range.length()), OtherLight::emission,
                   state.order == 0 || line.vertex.in_fog);
     }
@@ -73,7 +73,7 @@ void gather_fire_at_collision(const PathState& state, Segment& line, float dista
         const EmissionSample place = emission_sample_at(*state.tracer.fire, field, fog.position);
         if (!(max_component(place.emission) > 0)) continue;
         const float share = fire_shares(line, place, distance, collision_share * fog.total).collided;
-        add_light(state, line, place.emission * (share / fog.total), OtherLight::emission,
+        add_light(state, line, place.emission * (share / (fog.total * fog.channels)), OtherLight::emission,
                   state.order == 0 || line.vertex.in_fog);
     }
 }

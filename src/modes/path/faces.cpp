@@ -38,14 +38,14 @@ float mis_weight(const PathState& state, const FogPoint& fog, const Connection& 
 void hit_faces(const PathState& state, Segment& line) {
     const PathVertex& from = line.vertex;
     const float aimed = aimed_count(state.order - 1);
-    for (size_t i = 0; i < state.snapshot.lights.size() && line.transmittance > 0; ++i) {
+    for (size_t i = 0; i < state.snapshot.lights.size() && line.lit(); ++i) {
         const Light& light = state.snapshot.lights[i];
         if (!finds_face(light, from.ray.origin, from.peak)) continue;
         const float away = area_hit(*light.area, {from.ray.origin, from.ray.direction, infinity});
         if (away == infinity || !(away > line.traveled && away <= line.traveled + line.end)) continue;
         const float own = from.pdf * area_steradians(*light.area, from.ray.origin, from.ray.direction, away);
         const vec3 radiance = radiance_of(light) * face_texture(*light.area, from.ray.at(away)) * light.volume_scale;
-        const float share = line.transmittance * line_transmittance(state, line, {0, away - line.traveled});
+        const vec3 share = line.transmittance * line_transmittance(state, line, {0, away - line.traveled});
         add_light(state, line, radiance * (share * own / (aimed + own)), i, from.in_fog);
     }
 }

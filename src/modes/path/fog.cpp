@@ -5,17 +5,23 @@
 #include "volume/bricks/bricks.h"
 #include "volume/medium.h"
 
+#include <utility>
+
 namespace tyndall {
 namespace {
 void evaluate_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
     fog.position = position, fog.total = 0;
+    vec3 channels(0);
+    bool gray = true;
     fog.extinction.resize(snapshot.media.size()), fog.albedo.resize(snapshot.media.size());
     for (size_t m = 0; m < snapshot.media.size(); ++m, ++lookups) {
         const Optics& optics = snapshot.media[m].optics;
         fog.extinction[m] = gray_extinction(optics) * density_at(snapshot.media[m], position);
         if (optics.albedo_field) fog.albedo[m] = albedo_at(optics, position);
         fog.total += fog.extinction[m];
+        channels += fog.extinction[m] * optics.channels, gray &= is_gray(snapshot.media[m]);
     }
+    fog.channels = gray ? vec3(1) : channels / fog.total;
 }
 
 // An estimate of the transmittance up to a distance. MIS weights may use any estimate that is the same for both
@@ -98,14 +104,14 @@ void weigh(const PathState& state, const Segment& line, const Connection& connec
 
 // Adds light scattered at a distance sampled for the lights: one of several candidates, picked in proportion to its
 // estimated contribution (resampled importance sampling: Talbot et al. 2005). Returns the transmittance of the segment.
-float gather_on_the_way(const PathState& state, Segment& line) {
+vec3 gather_on_the_way(const PathState& state, Segment& line) {
     int& lookups = state.results[line.vertex.lane].steps;
     const auto passing = [&](Interval<float> range) { return line_transmittance(state, line, range); };
     Ray stretch = line.rest;
     stretch.t_max = line.end;
     state.scratch.lights.clear();
     if (state.scatters) lights_on_line(state.snapshot, stretch, state.scratch.lights);
-    if (state.scratch.lights.empty() || !(line.transmittance > 0)) return passing({0, line.end});
+    if (state.scratch.lights.empty() || !line.lit()) return passing({0, line.end});
 
     Candidate candidates[16];
     Connection connections[16];
@@ -123,8 +129,8 @@ float gather_on_the_way(const PathState& state, Segment& line) {
     while (!(candidates[picked].brightness > 0)) --picked;
 
     const Candidate& candidate = candidates[picked];
-    const float before = passing({0, candidate.distance});
-    if (!(before > 0)) return 0;
+    const vec3 before = passing({0, candidate.distance});
+    if (!(max_component(before) > 0)) return vec3(0);
     queue(state, line, connections[picked],
           candidate.scattered * (line.transmittance * before * total / candidate.brightness),
           state.order == 0 || line.vertex.in_fog);
@@ -135,10 +141,10 @@ bool scatters_sky(const PathState& state) { return state.snapshot.environment &&
 
 // Adds environment light that a medium scatters at a point of the line; `weight`: length that the point represents,
 // times transmittance.
-void gather_sky_by(const PathState& state, Segment& line, const FogPoint& fog, size_t medium, float weight) {
+void gather_sky_by(const PathState& state, Segment& line, const FogPoint& fog, size_t medium, vec3 weight) {
     const Snapshot& snapshot = state.snapshot;
     const Optics& optics = snapshot.media[medium].optics;
-    const vec3 scattered = fog.albedo_of(optics, medium) * (fog.extinction[medium] * weight);
+    const vec3 scattered = fog.albedo_of(optics, medium) * optics.channels * (fog.extinction[medium] * weight);
     const auto cosine = [&](vec3 direction) { return glm::dot(direction, line.rest.direction); };
     gather_sky(
         state, line, fog.position, vec3(0), snapshot.environment->volume_scale, state.order == 0 || line.vertex.in_fog,
@@ -151,7 +157,7 @@ void gather_sky_by(const PathState& state, Segment& line, const FogPoint& fog, s
 void gather_sky_on_the_way(const PathState& state, Segment& line) {
     if (!state.scatters) return;
     FogPoint& fog = state.scratch.fog;
-    for (size_t m = 0; m < state.snapshot.media.size() && line.transmittance > 0; ++m) {
+    for (size_t m = 0; m < state.snapshot.media.size() && line.lit(); ++m) {
         const Interval<float> range = thin_range(line, state.snapshot.media[m]);
         if (range.empty()) continue;
         const float distance = range.low + line.numbers(use_sky_distance).x * range.length();
@@ -165,12 +171,13 @@ void gather_sky_on_the_way(const PathState& state, Segment& line) {
 void gather_sky_at_collision(const PathState& state, Segment& line, const FogPoint& fog) {
     for (size_t m = 0; m < state.snapshot.media.size(); ++m)
         if (fog.extinction[m] > 0 && thin_range(line, state.snapshot.media[m]).empty())
-            gather_sky_by(state, line, fog, m, 1 / fog.total);
+            gather_sky_by(state, line, fog, m, 1.0f / (fog.total * fog.channels));
 }
 
 // Adds direct light at a collision: of lights, fire, the environment and emissive surfaces.
 void gather_at_collision(const PathState& state, Segment& line, float distance, const FogPoint& fog, float peak) {
     const Snapshot& snapshot = state.snapshot;
+    const auto scattered = [&](float cosine) { return fog.scattered(snapshot, cosine) / fog.channels; };
     const bool in_fog = state.order == 0 || line.vertex.in_fog;
     int& lookups = state.results[line.vertex.lane].steps;
     const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
@@ -185,8 +192,7 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
         const float cosine = glm::dot(connection.to_light, line.rest.direction);
         const float weight = mine > 0 ? mine / (mine + other) : (other > 0 ? 0.0f : 1.0f);
         const float share = weight * mis_weight(state, fog, connection, peak, cosine);
-        queue(state, line, connection, fog.scattered(snapshot, cosine) * irradiance * (share / pick.probability),
-              in_fog);
+        queue(state, line, connection, scattered(cosine) * irradiance * (share / pick.probability), in_fog);
     }
     if (state.tracer.fire) {
         const EmissionSample target = pick_fire(state, line);
@@ -194,7 +200,7 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
         const float cosine = glm::dot(connection.to_light, line.rest.direction), away = connection.fog_length;
         const float found = target.line_pdf + collision_pdf(snapshot, target.position, lookups);
         const float pdf = target.pdf * away * away + fog.phase_pdf(snapshot, cosine) * found;
-        if (pdf > 0) queue(state, line, connection, fog.scattered(snapshot, cosine) * target.emission / pdf, in_fog);
+        if (pdf > 0) queue(state, line, connection, scattered(cosine) * target.emission / pdf, in_fog);
     }
     if (scatters_sky(state)) gather_sky_at_collision(state, line, fog);
     if (!state.tracer.emitters) return;
@@ -206,58 +212,78 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
     const float cosine = glm::dot(connection.to_light, line.rest.direction);
     const float found = is_linked(snapshot, target.instance) ? 0 : fog.phase_pdf(snapshot, cosine);
     if (facing > 0 && pdf > 0)
-        queue(state, line, connection, fog.scattered(snapshot, cosine) * target.emission / (pdf + found), in_fog);
+        queue(state, line, connection, scattered(cosine) * target.emission / (pdf + found), in_fog);
 }
 
-// If the path collides with fog on this segment, gathers light there and scatters the path.
-void collide(const PathState& state, Segment& line) {
-    const Snapshot& snapshot = state.snapshot;
-    float nearest = line.end;
-    int hit = -1;
-    for (size_t m = 0; m < snapshot.media.size(); ++m) {
-        const float first = m == 0 ? line.numbers(use_free_path).x : line.random.next();
-        const float t = collision_distance(snapshot.media[m], line.rest, {0, nearest}, first, line.random,
-                                           state.results[line.vertex.lane].steps);
-        if (t < nearest) nearest = t, hit = static_cast<int>(m);
-    }
-    if (hit < 0) return;
-    line.unscattered = false;
+// A collision of the path with fog.
+struct Collision {
+    float distance = 0;
+    int medium = -1; // none
+};
 
-    const Optics& optics = snapshot.media[hit].optics;
+Collision find_collision(const PathState& state, Segment& line) {
+    Collision nearest{line.end};
+    for (size_t m = 0; m < state.snapshot.media.size(); ++m) {
+        const float first = m == 0 ? line.numbers(use_free_path).x : line.random.next();
+        const float t =
+            collision_distance(state.snapshot.media[m], line.vertex.channel, line.rest, {0, nearest.distance}, first,
+                               line.random, state.results[line.vertex.lane].steps, line.pdfs);
+        if (t < nearest.distance) nearest = {t, static_cast<int>(m)};
+    }
+    return nearest;
+}
+
+// Gathers light where the path collides with fog, and scatters it.
+void scatter_in_fog(const PathState& state, Segment& line, const Collision& collision) {
+    const Snapshot& snapshot = state.snapshot;
+    const Optics& optics = snapshot.media[collision.medium].optics;
     const bool in_fog = state.order == 0 || line.vertex.in_fog;
-    if (thin_range(line, snapshot.media[hit]).empty())
-        add_light(state, line, optics.emission.radiance / gray_extinction(optics), OtherLight::emission, in_fog);
+    if (thin_range(line, snapshot.media[collision.medium]).empty())
+        add_light(state, line, optics.emission.radiance / (gray_extinction(optics) * optics.channels),
+                  OtherLight::emission, in_fog);
     if (!state.scatters && !state.tracer.fire) return;
     FogPoint& fog = state.scratch.fog;
-    evaluate_fog(snapshot, line.rest.at(nearest), fog, state.results[line.vertex.lane].steps);
+    evaluate_fog(snapshot, line.rest.at(collision.distance), fog, state.results[line.vertex.lane].steps);
     if (!(fog.total > 0)) return;
-    if (state.tracer.fire) gather_fire_at_collision(state, line, nearest, fog);
+    if (state.tracer.fire) gather_fire_at_collision(state, line, collision.distance, fog);
     if (!state.scatters) return;
     const float peak = peak_for_faces(state.tracer, fog);
-    gather_at_collision(state, line, nearest, fog, peak);
+    gather_at_collision(state, line, collision.distance, fog, peak);
     const vec3 direction = sample_phase(optics.phase, line.rest.direction, line.numbers(use_phase));
     const float pdf = fog.phase_pdf(snapshot, glm::dot(direction, line.rest.direction));
     const bool ambient = state.tracer.ambient_in_fog, finds_sky = ambient && state.tracer.finds_sky;
     const float sky_scale = finds_sky ? snapshot.environment->volume_scale : 0;
-    const vec3 albedo = fog.albedo_of(optics, static_cast<size_t>(hit));
+    const vec3 albedo = fog.albedo_of(optics, static_cast<size_t>(collision.medium));
     scatter(state, line, {{fog.position, direction}, albedo, pdf, sky_scale, peak, ambient}, in_fog);
+}
+
+// If the path collides with fog on this segment, gathers light there and scatters the path.
+void collide(const PathState& state, Segment& line) {
+    const Collision collision = find_collision(state, line);
+    if (collision.medium < 0) return;
+    line.unscattered = false;
+    const vec3 shares = std::exchange(line.vertex.shares, shares_of(state, line));
+    scatter_in_fog(state, line, collision);
+    line.vertex.shares = shares; // of light that passes the collision, whose transmittance is estimated by itself
 }
 }
 
-float line_transmittance(const PathState& state, Segment& line, Interval<float> range) {
-    float share = 1;
+vec3 line_transmittance(const PathState& state, Segment& line, Interval<float> range) {
+    const vec3 arriving = line.vertex.throughput * line.vertex.shares * line.transmittance;
+    int& lookups = state.results[line.vertex.lane].steps;
+    vec3 share(1);
     for (const Medium& medium : state.snapshot.media)
-        if (share > 0)
-            share *= ratio_transmittance(medium, line.rest, range, line.random, state.results[line.vertex.lane].steps);
+        if (max_component(share) > 0)
+            share *= channel_transmittance(medium, arriving * share, line.rest, range, line.random, lookups);
     return share;
 }
 
 void follow_fog(const PathState& state, Segment& line) {
     gather_emission(state, line);
     if (scatters_sky(state)) gather_sky_on_the_way(state, line);
-    const float passing = gather_on_the_way(state, line);
+    const vec3 passing = gather_on_the_way(state, line);
     if (line.unscattered) collide(state, line);
     line.transmittance *= passing;
-    if (state.order == 0) state.results[line.vertex.lane].transmittance *= passing;
+    if (state.order == 0) state.results[line.vertex.lane].tint *= passing;
 }
 }

@@ -36,6 +36,7 @@ ScatterFunction prepare_path(const View& view, const Snapshot& snapshot, const S
     tracer->snapshot = with_terms(snapshot, terms);
     tracer->settings = settings.path, tracer->surfaces_emit = terms.emission;
     tracer->camera = view.camera, tracer->size = view.size;
+    tracer->chromatic = is_chromatic(tracer->snapshot);
     if (tracer->surfaces_emit) tracer->emitters = emissive_triangles(tracer->snapshot);
     tracer->fire = emissive_bricks(tracer->snapshot, Emitting::grids);
     take_fields(tracer->snapshot, settings.style, view.camera);
@@ -56,6 +57,7 @@ Mode path_mode() {
             .prepare = prepare_path,
             .append_rows = append_path_rows,
             .rungs = path_rungs,
-            .color = "#000000"};
+            .color = "#000000",
+            .traces_channels = true};
 }
 }

@@ -31,7 +31,7 @@ float target_pdf(const PathTracer& tracer, const Segment& line, const SurfacePoi
     return per_area > 0 ? per_area * distance * distance / std::max(facing, 1e-12f) : 0;
 }
 
-void gather_at_surface(const PathState& state, Segment& line, const SurfacePoint& surface, float share) {
+void gather_at_surface(const PathState& state, Segment& line, const SurfacePoint& surface, vec3 share) {
     const vec3 reflected = surface.base_color * (share / pi);
     const LightPick pick = pick_light(state.snapshot, surface, line.numbers(use_surface_light).x);
     if (pick.probability > 0) {
@@ -108,7 +108,7 @@ void leave(const PathState& state, Segment& line) {
                                 screen_position(state.tracer, line.vertex.ray));
     else
         add_light(state, line, surroundings(state, line) * line.transmittance, OtherLight::ambient, line.vertex.in_fog);
-    line.unscattered = false, line.transmittance = 0;
+    line.unscattered = false, line.transmittance = vec3(0);
 }
 
 void start_lines(const PathState& state) {
@@ -116,7 +116,7 @@ void start_lines(const PathState& state) {
     for (const PathVertex& vertex : state.scratch.vertices) {
         Segment line;
         line.vertex = vertex, line.rest = vertex.ray, line.skip = vertex.skip;
-        line.order = state.order;
+        line.order = state.order, line.pdfs = vertex.shares;
         line.random = {hash(vertex.id, static_cast<uint32_t>(state.order))};
         state.scratch.lines.push_back(line);
     }
@@ -154,7 +154,7 @@ void find_faces(const PathState& state, const Ray* tested, Hits& hits, std::span
 void hit_face(const PathState& state, Segment& line, const Light& light) {
     const vec3 radiance = radiance_of(light) * face_texture(*light.area, line.rest.at(line.end));
     add_light(state, line, radiance * line.transmittance, OtherLight::emission, line.vertex.in_fog);
-    line.unscattered = false, line.transmittance = 0;
+    line.unscattered = false, line.transmittance = vec3(0);
 }
 
 void follow_lines(const PathState& state) {
@@ -194,7 +194,7 @@ void follow_lines(const PathState& state) {
 
 void add_light(const PathState& state, const Segment& line, vec3 radiance, size_t part, bool in_fog) {
     const size_t lane = line.vertex.lane;
-    const vec3 added = line.vertex.throughput * radiance;
+    const vec3 added = line.vertex.throughput * line.vertex.shares * radiance;
     (in_fog ? state.results[lane].radiance : state.results[lane].surface) += added;
     if (in_fog && !state.batch.parts.empty()) state.batch.part(lane, part) += added;
 }
@@ -210,7 +210,7 @@ EmissionSample pick_fire(const PathState& state, const Segment& line) {
 
 void queue(const PathState& state, Segment& line, Connection connection, vec3 light, bool in_fog) {
     connection.lane = line.vertex.lane, connection.in_fog = in_fog;
-    connection.light = line.vertex.throughput * light;
+    connection.light = line.vertex.throughput * line.vertex.shares * light;
     connection.random = {hash(line.random.key, line.random.count++, 1u)};
     if (max_component(connection.light) > 0) state.scratch.connections.push_back(connection);
 }
@@ -222,8 +222,8 @@ void scatter(const PathState& state, const Segment& line, const ScatterEvent& ev
     next.ray = event.ray, next.skip = 0, next.in_fog = in_fog;
     next.pdf = event.pdf, next.sky_scale = event.sky_scale, next.peak = event.peak;
     next.ambient = event.ambient;
-    next.throughput *= event.share;
-    const float brightness = max_component(next.throughput);
+    next.throughput *= event.share, next.shares = shares_of(state, line);
+    const float brightness = max_component(next.throughput * next.shares) / max_component(next.shares);
     if (blind || !(brightness > 0)) return;
     if (state.order + 1 >= certain_orders && brightness < 1) {
         if (line.numbers(use_roulette).x >= brightness) return;
@@ -233,9 +233,9 @@ void scatter(const PathState& state, const Segment& line, const ScatterEvent& ev
 }
 
 void hit_surface(const PathState& state, Segment& line, const SurfacePoint& surface, int instance, int triangle) {
-    const float share = line.transmittance * surface.alpha;
+    const vec3 share = line.transmittance * surface.alpha;
     const bool holdout = state.order == 0 && is_matte(state.snapshot, instance); // seen by the camera
-    if (holdout) state.results[line.vertex.lane].holdout += share;
+    if (holdout) state.results[line.vertex.lane].holdout += state.tracer.chromatic ? mean_component(share) : share.x;
     // The eye sees emissive surfaces even if they illuminate nothing. Linked ones light others only by connections,
     // which know whom they connect.
     const bool found = state.order == 0 || (state.tracer.surfaces_emit && !is_linked(state.snapshot, instance));
@@ -244,7 +244,7 @@ void hit_surface(const PathState& state, Segment& line, const SurfacePoint& surf
         const float weight = aimed > 0 ? line.vertex.pdf / (line.vertex.pdf + aimed) : 1;
         add_light(state, line, surface.emission * (share * weight), OtherLight::emission, line.vertex.in_fog);
     }
-    if (state.scatters && share > 0 && !holdout) gather_at_surface(state, line, surface, share);
+    if (state.scatters && max_component(share) > 0 && !holdout) gather_at_surface(state, line, surface, share);
     if (line.unscattered && (surface.alpha >= 1 || line.numbers(use_blend).x < surface.alpha)) {
         line.unscattered = false;
         if (state.scatters && !holdout) bounce(state, line, surface);
@@ -269,6 +269,8 @@ void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scat
         vertex.lane = lane, vertex.ray = batch.rays[lane], vertex.id = batch.ids[lane];
         vertex.skip = batch.clip_near.empty() ? 0 : batch.clip_near[lane];
         vertex.sample = batch.sample_indices.empty() ? SampleIndex{vertex.id, 0} : batch.sample_indices[lane];
+        // Each channel in turn, from sample to sample.
+        vertex.channel = static_cast<int>((vertex.sample.index + hash(vertex.sample.sequence, use_channel)) % 3);
         scratch.vertices.push_back(vertex);
     }
     const int orders = tracer.settings.orders;
@@ -279,6 +281,10 @@ void trace_paths(const PathTracer& tracer, const RayBatch& batch, std::span<Scat
         const PathState state{tracer, tracer.snapshot, batch, results, scratch, order, order < orders};
         start_lines(state);
         follow_lines(state);
+    }
+    for (Scatter& result : results) {
+        result.transmittance = tracer.chromatic ? mean_component(result.tint) : result.tint.x;
+        result.tint = result.transmittance > 0 && tracer.chromatic ? result.tint / result.transmittance : vec3(1);
     }
 }
 }

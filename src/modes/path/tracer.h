@@ -26,6 +26,7 @@ struct PathTracer {
     std::vector<float> peaks;                          // of the media's phase functions, 1/sr; empty = no area lights
     bool finds_sky = false;    // lines that leave the scene add the environment too; else only light sampling does
     bool has_emission = false; // lines may meet emission of fog, surfaces or surroundings
+    bool chromatic = false;    // extinction differs between channels
 };
 
 // Traces the paths of one pixel sample of up to 16 pixels.

@@ -28,7 +28,8 @@ enum Use : uint32_t {
     use_fire,
     use_in_fire,
     use_sky,
-    use_sky_distance
+    use_sky_distance,
+    use_channel
 };
 
 // The end of a path: where its next line starts, and its throughput.
@@ -37,6 +38,7 @@ struct PathVertex {
     Ray ray;
     float skip = 0;      // surfaces nearer than this are ignored
     vec3 throughput{1};  // fraction of light that arrives at the eye along the path
+    vec3 shares{1};      // in chromatic fog, the path's pdf in each channel over their mean: MIS weights, times 3
     float pdf = 0;       // solid-angle pdf of the line's direction; 0 at the eye
     float sky_scale = 0; // factor on environment light that the line finds; 0 = it does not look for it
     float peak = 0;      // of the phase function at its start, 1/sr, if the line looks for faces of lights; else 0
@@ -44,6 +46,7 @@ struct PathVertex {
     bool ambient = true; // the line finds ambient light
     SampleIndex sample{0, 0};
     uint32_t id = 0;
+    int channel = 0; // by whose extinction the path is sampled
 };
 
 // The current line of a path.
@@ -52,7 +55,8 @@ struct Segment {
     Ray rest;                         // from the last BLEND surface on
     float skip = 0, traveled = 0;     // traveled: up to the start of `rest`
     float end = 0;                    // of the current segment, along `rest`
-    float transmittance = 1;          // transmittance of fog and surfaces so far
+    vec3 transmittance{1};            // of fog and surfaces so far
+    vec3 pdfs{1};                     // in chromatic fog, of the path up to its end by channel, times a factor
     int instance = -1, triangle = -1; // surface just passed
     bool unscattered = true;          // the path has not scattered yet
     int order = 0, layer = 0;
@@ -63,7 +67,8 @@ struct Segment {
         const Sample2 u = sample2(vertex.sample.index, hash(vertex.sample.sequence, step, static_cast<uint32_t>(use)));
         return {u.x, u.y};
     }
-    bool open() const { return unscattered || transmittance > 0; }
+    bool lit() const { return max_component(transmittance) > 0; } // whether light on the rest of it arrives
+    bool open() const { return unscattered || lit(); }
 };
 
 // Extinctions and albedos of all media at a point.
@@ -72,16 +77,18 @@ struct FogPoint {
     std::vector<float> extinction; // 1/m, of each medium
     std::vector<vec3> albedo;      // of media with an albedo field
     float total = 0;
+    vec3 channels{1}; // total extinction of each channel, relative to `total`
 
     vec3 albedo_of(const Optics& optics, size_t m) const { return optics.albedo_field ? albedo[m] : optics.albedo; }
 
-    // Σ albedo p, and Σ p, weighted by each medium's fraction of the extinction.
+    // Σ albedo p, and Σ p, weighted by each medium's fraction of the extinction; the first by channel.
     vec3 scattered(const Snapshot& snapshot, float cosine) const {
         vec3 sum(0);
         for (size_t m = 0; m < extinction.size(); ++m)
             if (extinction[m] > 0) {
                 const Optics& optics = snapshot.media[m].optics;
-                sum += albedo_of(optics, m) * (extinction[m] / total * phase_value(optics.phase, cosine));
+                sum += albedo_of(optics, m) * optics.channels *
+                       (extinction[m] / total * phase_value(optics.phase, cosine));
             }
         return sum;
     }
@@ -118,8 +125,13 @@ struct PathState {
 void add_light(const PathState& state, const Segment& line, vec3 radiance, OtherLight light, bool in_fog);
 void add_light(const PathState& state, const Segment& line, vec3 radiance, size_t light, bool in_fog);
 
+// PathVertex::shares at the end of the line's walk, by the balance heuristic.
+inline vec3 shares_of(const PathState& state, const Segment& line) {
+    return state.tracer.chromatic ? line.pdfs / mean_component(line.pdfs) : vec3(1);
+}
+
 // Unbiased estimate of the transmittance of fog between two distances of the current segment (ratio tracking).
-float line_transmittance(const PathState& state, Segment& line, Interval<float> range);
+vec3 line_transmittance(const PathState& state, Segment& line, Interval<float> range);
 
 // Queues a connection that contributes `light` times the path's throughput if nothing is in its way.
 void queue(const PathState& state, Segment& line, Connection connection, vec3 light, bool in_fog);

@@ -59,7 +59,7 @@ ScatterFunction combine_channels(std::vector<ScatterFunction> channels) {
 
 Prepared prepare_moment(const Mode& mode, const View& view, const Snapshot& snapshot, const Settings& settings,
                         History* history) {
-    if (!is_chromatic(snapshot)) return prepare_gray(mode, view, snapshot, settings, history);
+    if (!is_chromatic(snapshot) || mode.traces_channels) return prepare_gray(mode, view, snapshot, settings, history);
     Prepared result;
     std::vector<ScatterFunction> channels;
     for (int c = 0; c < 3; ++c) {

@@ -1,4 +1,5 @@
-// Chromatic fog: red, green and blue are rendered as three scenes with gray fog, one for each channel.
+// Chromatic fog: techniques that do not trace all channels together render red, green and blue as three scenes with
+// gray fog, one for each channel.
 #pragma once
 #include "render/frame/frame.h"
 

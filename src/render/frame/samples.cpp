@@ -21,8 +21,8 @@ namespace {
 // Distance to the end of the fog along a ray, in any channel.
 float reach_of(const FrameTracer& tracer, const Ray& ray) {
     float reach = fog_reach(tracer.snapshot.media, ray);
-    for (const std::vector<Medium>& media : tracer.snapshot.channel_media)
-        reach = std::max(reach, fog_reach(media, ray));
+    for (const Prepared& channel : tracer.prepared.channels)
+        reach = std::max(reach, fog_reach(channel.channel->media, ray));
     return reach;
 }
 

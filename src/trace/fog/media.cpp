@@ -50,9 +50,12 @@ mat4 checked_matrix(const Scene& scene, const MediumSource& source, double secon
 
 Optics optics_at(const MediumSource& source, const Moment& moment) {
     const double seconds = moment.seconds;
-    return {vec3(source.extinction.at(seconds)), source.albedo.at(seconds),
-            phase_at(source.phase, source.g.at(seconds), seconds),
-            mean_brightness(moment, [&](double time) { return source.emission.at(time); })};
+    const float extinction = source.extinction.at(seconds);
+    Optics optics{vec3(extinction), source.albedo.at(seconds), phase_at(source.phase, source.g.at(seconds), seconds),
+                  mean_brightness(moment, [&](double time) { return source.emission.at(time); })};
+    if (source.channel_extinction && extinction > 0)
+        optics.channels = glm::max(source.channel_extinction->at(seconds) / extinction, min_extinction);
+    return optics;
 }
 
 // Fog as stored in cache files.
@@ -241,31 +244,11 @@ void add_medium(const Scene& scene, const MediumSource& source, Moment moment, M
 }
 }
 
-namespace {
-// Appends the media from `first` on, which `source` added, to each channel's list, with that channel's extinction.
-void add_to_channels(const MediumSource& source, double seconds, size_t first, Snapshot& snapshot) {
-    for (size_t c = 0; c < 3; ++c) {
-        std::vector<Medium>& media = snapshot.channel_media[c];
-        media.insert(media.end(), snapshot.media.begin() + static_cast<std::ptrdiff_t>(first), snapshot.media.end());
-        if (!source.channel_extinction) continue;
-        const float extinction =
-            snapshot.fog_sources.back().unit * source.channel_extinction->at(seconds)[static_cast<glm::length_t>(c)];
-        for (size_t m = first; m < media.size(); ++m)
-            if (!only_emits(media[m].optics)) media[m].optics.extinction = vec3(std::max(extinction, min_extinction));
-    }
-}
-}
-
 void add_media(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing, Snapshot& snapshot) {
     const bool comparable = previous && previous->fog_sources.size() == scene.media.size();
-    const bool chromatic = std::ranges::any_of(
-        scene.media, [](const MediumSource& medium) { return medium.channel_extinction.has_value(); });
     snapshot.fog_sources.reserve(scene.media.size());
-    for (size_t i = 0; i < scene.media.size(); ++i) {
-        const size_t first = snapshot.media.size();
+    for (size_t i = 0; i < scene.media.size(); ++i)
         add_medium(scene, scene.media[i], moment, missing, comparable ? previous->fog_sources[i] : FogSource{},
                    snapshot);
-        if (chromatic) add_to_channels(scene.media[i], moment.seconds, first, snapshot);
-    }
 }
 }

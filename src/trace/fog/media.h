@@ -10,7 +10,7 @@ struct MediumSource;
 // works that is negligible over the longest path.
 inline constexpr float min_extinction = 1e-20f;
 
-// Fills media, channel_media, fog_sources and notes of `snapshot`. Media that neither attenuate nor emit light are left
+// Fills media, fog_sources and notes of `snapshot`. Media that neither attenuate nor emit light are left
 // out. Reuses bricks of `previous` (may be null) made from the same file or recipe. Throws Error.
 void add_media(const Scene& scene, Moment moment, const Snapshot* previous, MissingFrame missing, Snapshot& snapshot);
 

@@ -108,7 +108,7 @@ TEST(Channels, AlphaIsOneMinusTheMean) {
 // Each channel is what gray fog would show.
 TEST(Channels, EachIsThatOfGrayFog) {
     for (const Mode& mode : modes()) {
-        if (mode.surfaces == Surfaces::post) continue;
+        if (mode.surfaces == Surfaces::post || mode.traces_channels) continue;
         Seen all;
         see(scene_text(text(extinction)), mode.name, all);
         for (int c = 0; c < 3; ++c) {
@@ -122,6 +122,49 @@ TEST(Channels, EachIsThatOfGrayFog) {
                     << mode.name;
             }
         }
+    }
+}
+
+// Clouds in chromatic haze over ground, under a sky, a lamp and the sun: paths that follow any channel, weighted, add
+// up to those of each. Differences of pixels are independent, with the same error.
+TEST(Channels, TracedTogetherAddUpToThoseOfGrayFog) {
+    constexpr int samples = 512;
+    const auto scene_of = [](const std::string& haze, const std::string& cloud) {
+        return R"({"tyndall": 1, "camera": {"position": [0, 1, 6], "target": [0, 0.6, 0], "vertical_fov": 40},
+            "lights": [{"type": "sun", "direction": [-1, -2, -1], "intensity": 3},
+                       {"type": "point", "position": [1, 1.5, 1], "intensity": 4},
+                       {"type": "environment", "intensity": 1}],
+            "background": {"color": [0.2, 0.3, 0.5]},
+            "media": [{"type": "homogeneous", "extinction": )" +
+               haze + R"(, "albedo": [0.9, 0.8, 0.7], "g": 0.5, "emission": [0.02, 0.01, 0.03],
+                       "bounds": {"low": [-3, -1, -3], "high": [3, 2, 3]}},
+                      {"type": "noise", "recipe": "cloud.json", "extinction": )" +
+               cloud + R"(, "albedo": 0.9}]})";
+    };
+    const TempFolder folder;
+    folder.put("cloud.json", R"({"bounds": {"low": [-1, 0, -1], "high": [1, 1, 1]}, "voxel_size": 0.1,
+        "noise": {"scale": 0.5, "octaves": 2, "seed": 3}, "density": {"threshold": 0.3, "gain": 2}})");
+    const auto rendered = [&](const std::string& text, int seed) {
+        const Scene scene = load_scene(folder.put("scene.json", text));
+        const Snapshot snapshot = make_snapshot(scene, moment_of(scene, 1));
+        View view = plain_view({16, 8}, samples);
+        view.camera = camera_at(scene, 0, 0);
+        view.seed = static_cast<uint32_t>(seed);
+        FrameStats stats;
+        return render_frame(find_mode("path"), view, snapshot, settings_for(Quality::preview), {}, stats);
+    };
+    const vec3 thin(0.9f, 0.3f, 0.05f), thick(6, 3, 1);
+    const Layers all = rendered(scene_of(text(thin), text(thick)), 1);
+    for (int c = 0; c < 3; ++c) {
+        const Layers gray = rendered(scene_of(std::to_string(thin[c]), std::to_string(thick[c])), 2 + c);
+        double sum = 0, squares = 0, mean = 0;
+        const size_t count = all.color.pixels.size();
+        for (size_t i = 0; i < count; ++i) {
+            const double d = double{all.color.pixels[i][c]} - gray.color.pixels[i][c];
+            sum += d, squares += d * d, mean += gray.color.pixels[i][c];
+        }
+        EXPECT_LT(std::abs(sum), 4.5 * std::sqrt(squares)) << c;
+        EXPECT_LT(std::sqrt(squares), 0.01 * mean) << "precise enough to tell";
     }
 }
 
@@ -151,9 +194,8 @@ TEST(Channels, SurfacesAreLitThroughTheFog) {
     scene.materials.back().base_color = vec3(1);
     Snapshot snapshot = snapshot_of(scene);
     snapshot.lights = {sun_light({0, 0, -1}, 2)};
-    for (int c = 0; c < 3; ++c)
-        snapshot.channel_media[c] = {homogeneous_medium(extinction[c], {vec3(-50, -50, -9), vec3(50, 50, 0)})};
     snapshot.media = {homogeneous_medium(mean_component(extinction), {vec3(-50, -50, -9), vec3(50, 50, 0)})};
+    snapshot.media[0].optics.channels = extinction / mean_component(extinction);
     View view = plain_view({8, 8}, 1, 2.0f);
     view.surface_parts = true;
     FrameStats stats;

@@ -64,7 +64,7 @@ TEST(DensityUnit, DoesNotMatterToTheMedium) {
         const float highest = snapshot.media[0].density.bricks->highest;
         EXPECT_NEAR(optics.extinction.x * highest, 2, 2e-3f);
         EXPECT_NEAR(optics.emission.radiance.x * highest, 3, 3e-3f);
-        EXPECT_NEAR(snapshot.channel_media[2][0].optics.extinction.x * highest, 3, 3e-3f);
+        EXPECT_NEAR(channel_of(snapshot, 2).media[0].optics.extinction.x * highest, 3, 3e-3f);
         EXPECT_TRUE(snapshot.notes.empty());
     }
 }
