@@ -65,7 +65,7 @@ struct Mode {
     bool interactive = false;         // whether it is fast enough for interactive camera moves
     bool samples_soft_lights = false; // whether it samples soft lights: noise instead of bias
     bool often_fastest = false;       // whether it often reaches an error sooner than the main mode
-    bool traces_channels = false;     // whether it traces all channels of chromatic fog together; else one by one
+    bool traces_channels = false;     // whether it can trace all channels of chromatic fog together
 
     // What the stability suite (measure/stress) requires of a technique that is not artistic.
     bool resolves_density = true; // renders grids at their full detail

@@ -37,9 +37,12 @@ void gather_field(const PathState& state, Segment& line, size_t number) {
 }
 }
 
-Interval<float> thin_range(const Segment& line, const Medium& medium) {
-    const Interval<float> inside = clip(medium.world_bounds, line.rest.origin, line.rest.direction, {0, line.end});
-    return medium.majorant() * inside.length() < 1 ? inside : Interval<float>{};
+ThinPart thin_part(const Segment& line, const Medium& medium) {
+    ThinPart part{clip(medium.world_bounds, line.rest.origin, line.rest.direction, {0, line.end})};
+    if (part.range.empty()) return part;
+    for (glm::length_t c = 0; c < 3; ++c)
+        part.channels[c] = medium.majorant() * part.range.length() * medium.optics.channels[c] < 1 ? 1.0f : 0.0f;
+    return part;
 }
 
 float collision_pdf(const Snapshot& snapshot, vec3 position, int& lookups) {
@@ -56,9 +59,9 @@ void gather_emission(const PathState& state, Segment& line) {
     const size_t fields = state.tracer.fire ? state.tracer.fire->fields.size() : 0;
     for (size_t m = 0; m < fields && line.lit(); ++m) gather_field(state, line, m);
     for (const Medium& medium : state.snapshot.media) {
-        const vec3 emission = medium.optics.emission.radiance;
-        const Interval<float> range = thin_range(line, medium);
-        if (range.empty() || !(max_component(emission) > 0) || !line.lit()) continue;
+        const auto [range, channels] = thin_part(line, medium);
+        const vec3 emission = medium.optics.emission.radiance * channels;
+        if (!(max_component(emission) > 0) || !line.lit()) continue;
         const float distance = range.low + line.numbers(use_emission).x * range.length();
         const float density = density_at(medium, line.rest.at(distance));
         if (!(density > 0)) continue;

@@ -3,8 +3,13 @@
 #include "modes/path/vertex.h"
 
 namespace tyndall {
-// Interval of a medium on the segment if it is so thin there that paths rarely collide with it; else empty.
-Interval<float> thin_range(const Segment& line, const Medium& medium);
+// Interval of a medium on the segment, and 1 for the channels in which it is so thin there that paths rarely collide
+// with it; 0 for the others.
+struct ThinPart {
+    Interval<float> range;
+    vec3 channels{0};
+};
+ThinPart thin_part(const Segment& line, const Medium& medium);
 
 // Pdf, 1/m, with which a path finds a point of the fire by colliding there, scaled for MIS against other techniques.
 float collision_pdf(const Snapshot& snapshot, vec3 position, int& lookups);

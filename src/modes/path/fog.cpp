@@ -26,20 +26,27 @@ void evaluate_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& l
 
 // An estimate of the transmittance up to a distance. MIS weights may use any estimate that is the same for both
 // techniques. Grids count with their mean density, up to a limit, as a ray may pass through gaps in them.
-float guessed_transmittance(const Snapshot& snapshot, const Segment& line, float distance) {
+vec3 guessed_transmittance(const PathState& state, const Segment& line, float distance) {
     Ray ray = line.rest;
     ray.t_max = distance;
     constexpr double max_in_grids = 3;
-    double depth = 0, in_grids = 0;
-    for (const Medium& medium : snapshot.media) {
+    dvec3 depth(0), in_grids(0);
+    for (const Medium& medium : state.snapshot.media) {
+        const dvec3 channels(medium.optics.channels);
         if (medium.density.kind != DensityKind::bricks) {
-            depth += optical_depth(medium, ray);
+            depth += optical_depth(medium, ray) * channels;
             continue;
         }
         const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
-        in_grids += static_cast<double>(inside.length()) * gray_extinction(medium.optics) * medium.density.bricks->mean;
+        in_grids += static_cast<double>(inside.length()) * gray_extinction(medium.optics) *
+                    medium.density.bricks->mean * channels;
     }
-    return static_cast<float>(std::exp(-depth - std::min(in_grids, max_in_grids)));
+    return vec3(glm::exp(-depth - glm::min(in_grids, max_in_grids)));
+}
+
+// Pdf, 1/m, of a collision at a point, given the transmittance up to it.
+float collision_pdf(const PathState& state, const FogPoint& fog, vec3 transmittance) {
+    return fog.total * state.mean(fog.channels * transmittance);
 }
 
 // Number of candidate distances on a line. Lines from the eye are worth more shadow rays, as beams are narrow.
@@ -91,15 +98,17 @@ void weigh(const PathState& state, const Segment& line, const Connection& connec
     evaluate_fog(snapshot, connection.point, fog, lookups);
     if (!(fog.total > 0)) return;
     const LineLight& along = state.scratch.lights[connection.light_index];
-    const float guess = guessed_transmittance(snapshot, line, candidate.distance);
+    const vec3 guess = guessed_transmittance(state, line, candidate.distance);
     const float pdf = static_cast<float>(candidate_count(state)) * along.probability * along.pdf(candidate.distance),
-                other = fog.total * guess * pick_probability(snapshot, fog.position, connection.light_index);
+                other =
+                    collision_pdf(state, fog, guess) * pick_probability(snapshot, fog.position, connection.light_index);
     if (!(pdf > 0)) return;
     const float cosine = glm::dot(connection.to_light, line.rest.direction);
     const float share =
         fog.total / (pdf + other) * mis_weight(state, fog, connection, peak_for_faces(state.tracer, fog), cosine);
     candidate.scattered = fog.scattered(snapshot, cosine) * share * connection.light;
-    candidate.brightness = luminance(candidate.scattered) * guess;
+    candidate.brightness =
+        state.tracer.chromatic ? luminance(candidate.scattered * guess) : luminance(candidate.scattered) * guess.x;
 }
 
 // Adds light scattered at a distance sampled for the lights: one of several candidates, picked in proportion to its
@@ -158,20 +167,22 @@ void gather_sky_on_the_way(const PathState& state, Segment& line) {
     if (!state.scatters) return;
     FogPoint& fog = state.scratch.fog;
     for (size_t m = 0; m < state.snapshot.media.size() && line.lit(); ++m) {
-        const Interval<float> range = thin_range(line, state.snapshot.media[m]);
-        if (range.empty()) continue;
+        const auto [range, channels] = thin_part(line, state.snapshot.media[m]);
+        if (!(max_component(channels) > 0)) continue;
         const float distance = range.low + line.numbers(use_sky_distance).x * range.length();
         evaluate_fog(state.snapshot, line.rest.at(distance), fog, state.results[line.vertex.lane].steps);
         if (!(fog.extinction[m] > 0)) continue;
         gather_sky_by(state, line, fog, m,
-                      range.length() * line.transmittance * line_transmittance(state, line, {0, distance}));
+                      range.length() * line.transmittance * line_transmittance(state, line, {0, distance}) * channels);
     }
 }
 
 void gather_sky_at_collision(const PathState& state, Segment& line, const FogPoint& fog) {
-    for (size_t m = 0; m < state.snapshot.media.size(); ++m)
-        if (fog.extinction[m] > 0 && thin_range(line, state.snapshot.media[m]).empty())
-            gather_sky_by(state, line, fog, m, 1.0f / (fog.total * fog.channels));
+    for (size_t m = 0; m < state.snapshot.media.size(); ++m) {
+        const vec3 thick = 1.0f - thin_part(line, state.snapshot.media[m]).channels;
+        if (fog.extinction[m] > 0 && max_component(thick) > 0)
+            gather_sky_by(state, line, fog, m, 1.0f / (fog.total * fog.channels) * thick);
+    }
 }
 
 // Adds direct light at a collision: of lights, fire, the environment and emissive surfaces.
@@ -183,7 +194,7 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
     const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
     if (pick.probability > 0) {
         const LineLight& along = state.scratch.lights[pick.light];
-        const float mine = fog.total * guessed_transmittance(snapshot, line, distance) * pick.probability,
+        const float mine = collision_pdf(state, fog, guessed_transmittance(state, line, distance)) * pick.probability,
                     other = static_cast<float>(candidate_count(state)) * along.probability * along.pdf(distance);
         const Connection connection =
             connection_to_light(state.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft));
@@ -238,8 +249,9 @@ void scatter_in_fog(const PathState& state, Segment& line, const Collision& coll
     const Snapshot& snapshot = state.snapshot;
     const Optics& optics = snapshot.media[collision.medium].optics;
     const bool in_fog = state.order == 0 || line.vertex.in_fog;
-    if (thin_range(line, snapshot.media[collision.medium]).empty())
-        add_light(state, line, optics.emission.radiance / (gray_extinction(optics) * optics.channels),
+    const vec3 thick = 1.0f - thin_part(line, snapshot.media[collision.medium]).channels;
+    if (max_component(thick) > 0)
+        add_light(state, line, optics.emission.radiance / (gray_extinction(optics) * optics.channels) * thick,
                   OtherLight::emission, in_fog);
     if (!state.scatters && !state.tracer.fire) return;
     FogPoint& fog = state.scratch.fog;

@@ -235,7 +235,7 @@ void scatter(const PathState& state, const Segment& line, const ScatterEvent& ev
 void hit_surface(const PathState& state, Segment& line, const SurfacePoint& surface, int instance, int triangle) {
     const vec3 share = line.transmittance * surface.alpha;
     const bool holdout = state.order == 0 && is_matte(state.snapshot, instance); // seen by the camera
-    if (holdout) state.results[line.vertex.lane].holdout += state.tracer.chromatic ? mean_component(share) : share.x;
+    if (holdout) state.results[line.vertex.lane].holdout += state.mean(share);
     // The eye sees emissive surfaces even if they illuminate nothing. Linked ones light others only by connections,
     // which know whom they connect.
     const bool found = state.order == 0 || (state.tracer.surfaces_emit && !is_linked(state.snapshot, instance));

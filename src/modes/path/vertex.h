@@ -118,6 +118,9 @@ struct PathState {
     PathScratch& scratch;
     int order = 0;
     bool scatters = true; // whether paths may scatter at the end of the current lines
+
+    // Of the channels, which are equal in gray fog.
+    float mean(vec3 value) const { return tracer.chromatic ? mean_component(value) : value.x; }
 };
 
 // Adds radiance times the path's throughput, without the line's attenuation, as other light or as that of a light of

@@ -1,5 +1,5 @@
-// Chromatic fog: techniques that do not trace all channels together render red, green and blue as three scenes with
-// gray fog, one for each channel.
+// Chromatic fog: red, green and blue are rendered as three scenes with gray fog, one for each channel, except by
+// techniques that trace all channels together.
 #pragma once
 #include "render/frame/frame.h"
 
