@@ -40,8 +40,8 @@ void gather_field(const PathState& state, Segment& line, size_t number) {
 ThinPart thin_part(const Segment& line, const Medium& medium) {
     ThinPart part{clip(medium.world_bounds, line.rest.origin, line.rest.direction, {0, line.end})};
     if (part.range.empty()) return part;
-    for (glm::length_t c = 0; c < 3; ++c)
-        part.channels[c] = medium.majorant() * part.range.length() * medium.optics.channels[c] < 1 ? 1.0f : 0.0f;
+    const float depth = medium.majorant() * part.range.length();
+    for (glm::length_t c = 0; c < 3; ++c) part.channels[c] = depth * medium.optics.channels[c] < 1 ? 1.0f : 0.0f;
     return part;
 }
 

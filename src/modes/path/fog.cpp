@@ -9,43 +9,54 @@
 
 namespace tyndall {
 namespace {
-void evaluate_fog(const Snapshot& snapshot, vec3 position, FogPoint& fog, int& lookups) {
-    fog.position = position, fog.total = 0;
-    vec3 channels(0);
-    bool gray = true;
-    fog.extinction.resize(snapshot.media.size()), fog.albedo.resize(snapshot.media.size());
-    for (size_t m = 0; m < snapshot.media.size(); ++m, ++lookups) {
-        const Optics& optics = snapshot.media[m].optics;
-        fog.extinction[m] = gray_extinction(optics) * density_at(snapshot.media[m], position);
+void evaluate_fog(const PathState& state, vec3 position, FogPoint& fog, int& lookups) {
+    const std::vector<Medium>& media = state.snapshot.media;
+    fog.position = position, fog.total = 0, fog.channels = vec3(1);
+    fog.extinction.resize(media.size()), fog.albedo.resize(media.size());
+    for (size_t m = 0; m < media.size(); ++m, ++lookups) {
+        const Optics& optics = media[m].optics;
+        fog.extinction[m] = gray_extinction(optics) * density_at(media[m], position);
         if (optics.albedo_field) fog.albedo[m] = albedo_at(optics, position);
         fog.total += fog.extinction[m];
-        channels += fog.extinction[m] * optics.channels, gray &= is_gray(snapshot.media[m]);
     }
-    fog.channels = gray ? vec3(1) : channels / fog.total;
+    if (!state.tracer.chromatic || !(fog.total > 0)) return;
+    vec3 totals(0);
+    for (size_t m = 0; m < media.size(); ++m) totals += fog.extinction[m] * media[m].optics.channels;
+    fog.channels = totals / fog.total;
 }
 
-// An estimate of the transmittance up to a distance. MIS weights may use any estimate that is the same for both
-// techniques. Grids count with their mean density, up to a limit, as a ray may pass through gaps in them.
-vec3 guessed_transmittance(const PathState& state, const Segment& line, float distance) {
+// Transmittance up to a distance, of one channel or (dvec3) three, where grids have their mean density, up to a limit,
+// as a ray may pass through gaps in them.
+template<class Spectrum, class Share>
+Spectrum mean_transmittance(const Snapshot& snapshot, const Segment& line, float distance, const Share& share) {
     Ray ray = line.rest;
     ray.t_max = distance;
     constexpr double max_in_grids = 3;
-    dvec3 depth(0), in_grids(0);
-    for (const Medium& medium : state.snapshot.media) {
-        const dvec3 channels(medium.optics.channels);
+    Spectrum depth(0), in_grids(0);
+    for (const Medium& medium : snapshot.media) {
         if (medium.density.kind != DensityKind::bricks) {
-            depth += optical_depth(medium, ray) * channels;
+            depth += optical_depth(medium, ray) * share(medium);
             continue;
         }
         const Interval<float> inside = clip(medium.world_bounds, ray.origin, ray.direction, {0, distance});
         in_grids += static_cast<double>(inside.length()) * gray_extinction(medium.optics) *
-                    medium.density.bricks->mean * channels;
+                    medium.density.bricks->mean * share(medium);
     }
-    return vec3(glm::exp(-depth - glm::min(in_grids, max_in_grids)));
+    using std::exp, glm::exp;
+    return exp(-depth - glm::min(in_grids, Spectrum(max_in_grids)));
 }
 
-// Pdf, 1/m, of a collision at a point, given the transmittance up to it.
-float collision_pdf(const PathState& state, const FogPoint& fog, vec3 transmittance) {
+// An estimate of the transmittance up to a distance. MIS weights may use any estimate that is the same for both
+// techniques.
+vec3 guessed_transmittance(const PathState& state, const Segment& line, float distance) {
+    if (!state.tracer.chromatic)
+        return vec3(mean_transmittance<double>(state.snapshot, line, distance, [](const Medium&) { return 1.0; }));
+    return vec3(mean_transmittance<dvec3>(state.snapshot, line, distance,
+                                          [](const Medium& medium) { return dvec3(medium.optics.channels); }));
+}
+
+// Estimated pdf, 1/m, of a collision at a point, given the transmittance up to it.
+float guessed_collision_pdf(const PathState& state, const FogPoint& fog, vec3 transmittance) {
     return fog.total * state.mean(fog.channels * transmittance);
 }
 
@@ -95,13 +106,13 @@ void weigh(const PathState& state, const Segment& line, const Connection& connec
     if (!(max_component(connection.light) > 0)) return;
     const Snapshot& snapshot = state.snapshot;
     FogPoint& fog = state.scratch.fog;
-    evaluate_fog(snapshot, connection.point, fog, lookups);
+    evaluate_fog(state, connection.point, fog, lookups);
     if (!(fog.total > 0)) return;
     const LineLight& along = state.scratch.lights[connection.light_index];
     const vec3 guess = guessed_transmittance(state, line, candidate.distance);
     const float pdf = static_cast<float>(candidate_count(state)) * along.probability * along.pdf(candidate.distance),
-                other =
-                    collision_pdf(state, fog, guess) * pick_probability(snapshot, fog.position, connection.light_index);
+                other = guessed_collision_pdf(state, fog, guess) *
+                        pick_probability(snapshot, fog.position, connection.light_index);
     if (!(pdf > 0)) return;
     const float cosine = glm::dot(connection.to_light, line.rest.direction);
     const float share =
@@ -170,7 +181,7 @@ void gather_sky_on_the_way(const PathState& state, Segment& line) {
         const auto [range, channels] = thin_part(line, state.snapshot.media[m]);
         if (!(max_component(channels) > 0)) continue;
         const float distance = range.low + line.numbers(use_sky_distance).x * range.length();
-        evaluate_fog(state.snapshot, line.rest.at(distance), fog, state.results[line.vertex.lane].steps);
+        evaluate_fog(state, line.rest.at(distance), fog, state.results[line.vertex.lane].steps);
         if (!(fog.extinction[m] > 0)) continue;
         gather_sky_by(state, line, fog, m,
                       range.length() * line.transmittance * line_transmittance(state, line, {0, distance}) * channels);
@@ -194,7 +205,8 @@ void gather_at_collision(const PathState& state, Segment& line, float distance, 
     const LightPick pick = pick_light(snapshot, fog.position, line.numbers(use_light).x);
     if (pick.probability > 0) {
         const LineLight& along = state.scratch.lights[pick.light];
-        const float mine = collision_pdf(state, fog, guessed_transmittance(state, line, distance)) * pick.probability,
+        const float mine = guessed_collision_pdf(state, fog, guessed_transmittance(state, line, distance)) *
+                           pick.probability,
                     other = static_cast<float>(candidate_count(state)) * along.probability * along.pdf(distance);
         const Connection connection =
             connection_to_light(state.tracer, fog.position, pick.light, pick.to_light, line.numbers(use_soft));
@@ -255,7 +267,7 @@ void scatter_in_fog(const PathState& state, Segment& line, const Collision& coll
                   OtherLight::emission, in_fog);
     if (!state.scatters && !state.tracer.fire) return;
     FogPoint& fog = state.scratch.fog;
-    evaluate_fog(snapshot, line.rest.at(collision.distance), fog, state.results[line.vertex.lane].steps);
+    evaluate_fog(state, line.rest.at(collision.distance), fog, state.results[line.vertex.lane].steps);
     if (!(fog.total > 0)) return;
     if (state.tracer.fire) gather_fire_at_collision(state, line, collision.distance, fog);
     if (!state.scatters) return;
