@@ -43,11 +43,14 @@ def only_fog(file):
 
 
 def time_ratio(scene, folder, common, options):
-    """Median wall seconds over those of the other program."""
+    """Median wall seconds over those of the other program; None where that refuses the scene."""
     seconds = {program: [] for program in (options.program, options.beside)}
     for _ in range(TIMES):
         for program, took in seconds.items():
-            took.append(render(program, scene, folder / "timed.exr", ["--mode", "froxel", "--samples", 1, *common]).wall)
+            run = render(program, scene, folder / "timed.exr", ["--mode", "froxel", "--samples", 1, *common])
+            if run.layers is None:
+                return None
+            took.append(run.wall)
     return float(np.median(seconds[options.program]) / np.median(seconds[options.beside]))
 
 
@@ -104,7 +107,7 @@ def main():
             rows.append(row)
             print(f"{row['seed']!s:>9} {row['family']:12s} " + (row["refused"] if "refused" in row else
                   f"E {row['E']:.4f} FLIP {row['flip']:.4f} {row['seconds']:.2f} s" +
-                  (f" {row['by_other']:.2f} times the other's" if "by_other" in row else "")), flush=True)
+                  (f" {row['by_other']:.2f} times the other's" if row.get("by_other") else "")), flush=True)
             (options.output / "froxels.json").write_text(json.dumps(rows, indent=1))
     told = [row for row in rows if "E" in row]
     result = {"scenes": len(told), "E": float(np.mean([row["E"] <= MOST_ERROR for row in told])),
