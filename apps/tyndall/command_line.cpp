@@ -57,11 +57,23 @@ std::string parse_problem(const CLI::App& app, const CLI::ParseError& error) {
     return reworded(error) + " (" + help + ")";
 }
 
+constexpr const char* empty_value = "the value is empty";
+
+// Refuses "--name=", which CLI11 would read as "--name" followed by its value.
+void refuse_lone_names(int argc, char** argv) {
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view argument = argv[i];
+        if (argument == "--") return;
+        if (argument.starts_with("--") && argument.find('=') == argument.size() - 1)
+            fail(ExitCode::usage, printable(argument.substr(0, argument.size() - 1), 60), empty_value);
+    }
+}
+
 // An empty value is most often a variable a script forgot to set; it must not count as "not given".
 void refuse_empty_values(const CLI::App& app) {
     for (const CLI::Option* option : app.get_options())
         for (const std::string& value : option->results())
-            if (value.empty()) fail(ExitCode::usage, option->get_name(), "the value is empty");
+            if (value.empty()) fail(ExitCode::usage, option->get_name(), empty_value);
     for (const CLI::App* command : app.get_subcommands()) refuse_empty_values(*command);
 }
 }
@@ -118,6 +130,7 @@ void CommandLine::end_every_footer(const std::string& text) const {
 }
 
 bool CommandLine::read(int argc, char** argv) const {
+    refuse_lone_names(argc, argv);
     try {
         app_->parse(argc, argv);
     } catch (const CLI::CallForHelp&) {

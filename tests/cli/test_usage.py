@@ -115,6 +115,8 @@ class CommandLine(ProgramTest):
         self.refuse(2, ["FILE"], "info")
         self.refuse(2, ["FILES"], "check")
         self.refuse(2, ["unexpected"], *self.render("another.json"))
+        for option in ["--shutter=", "--mode=", "--png="]:
+            self.refuse(2, [option[:-1], "empty"], *self.render(option, "--orders", "1"))
 
     def test_wrong_values_of_render_options(self):
         cases = {
