@@ -37,20 +37,31 @@ constexpr uint32_t reverse_bits(uint32_t x) {
     return (x >> 16) | (x << 16);
 }
 
-// Hash-based Owen scrambling (Laine–Karras form, Vegdahl's constants).
-constexpr uint32_t owen_scramble(uint32_t x, uint32_t seed) {
-    x = reverse_bits(x);
+// Hash-based Owen scrambling of reversed bits, the lowest first (Laine–Karras form, Vegdahl's constants).
+constexpr uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
     x ^= x * 0x3d20adeau, x += seed, x *= (seed >> 16) | 1u;
-    x ^= x * 0x05526c56u, x ^= x * 0x53a22864u;
-    return reverse_bits(x);
+    x ^= x * 0x05526c56u;
+    return x ^ (x * 0x53a22864u);
 }
 
-// Second dimension of the Sobol sequence at `index`, as 32 bits.
-constexpr uint32_t sobol2(uint32_t index) {
-    uint32_t result = 0;
-    for (uint32_t direction = 1u << 31; index; index >>= 1, direction ^= direction >> 1)
-        if (index & 1) result ^= direction;
-    return result;
+// Owen-scrambles an index, so that each power of 2 of them from 0 on is shuffled within itself.
+constexpr uint32_t shuffle_index(uint32_t index, uint32_t seed) {
+    return reverse_bits(scramble_reversed(reverse_bits(index), seed));
+}
+
+// Owen-scrambled point of the van der Corput sequence, as 32 bits.
+constexpr uint32_t radical_inverse(uint32_t index, uint32_t seed) {
+    return reverse_bits(scramble_reversed(index, seed));
+}
+
+// Second dimension of the Sobol sequence, bits reversed: the product with Pascal's triangle modulo 2, whose entry (i,
+// j) is 1 where all bits of i are set in j (Lucas).
+constexpr uint32_t sobol2_reversed(uint32_t index) {
+    index ^= (index >> 1) & 0x55555555u;
+    index ^= (index >> 2) & 0x33333333u;
+    index ^= (index >> 4) & 0x0f0f0f0fu;
+    index ^= (index >> 8) & 0x00ff00ffu;
+    return index ^ (index >> 16);
 }
 
 // Sample `index` of an Owen-scrambled (0,2)-sequence in [0,1)²; `seed` decorrelates uses and pixels.
@@ -58,8 +69,8 @@ struct Sample2 {
     float x, y;
 };
 constexpr Sample2 sample2(uint32_t index, uint32_t seed) {
-    const uint32_t shuffled = owen_scramble(index, hash(seed, 0u));
-    return {to_unit(owen_scramble(reverse_bits(shuffled), hash(seed, 1u))),
-            to_unit(owen_scramble(sobol2(shuffled), hash(seed, 2u)))};
+    const uint32_t shuffled = shuffle_index(index, hash(seed, 0u));
+    return {to_unit(radical_inverse(shuffled, hash(seed, 1u))),
+            to_unit(reverse_bits(scramble_reversed(sobol2_reversed(shuffled), hash(seed, 2u))))};
 }
 }

@@ -62,8 +62,7 @@ int moment_at(const View& view, ivec2 pixel, int sample) {
     const uint32_t key = hash(static_cast<uint32_t>(tile.x), static_cast<uint32_t>(tile.y), view.seed,
                               static_cast<uint32_t>(view.frame), use_shutter, batch);
     // The samples of all pixels of a tile share the points of one scrambled sequence ...
-    const uint32_t shuffled = owen_scramble(index, hash(key, 0u));
-    uint32_t time = owen_scramble(reverse_bits(shuffled), hash(key, 1u));
+    uint32_t time = radical_inverse(shuffle_index(index, hash(key, 0u)), hash(key, 1u));
     // ... except that each pixel of 2×2 takes its own quarter of the gap between two points.
     const uint32_t quarter = static_cast<uint32_t>(pixel.x & 1) | static_cast<uint32_t>(pixel.y & 1) << 1;
     const int bits = std::bit_width(std::bit_ceil(count)) - 1;

@@ -45,6 +45,11 @@ TEST(Random, ValuesAreFixedForEver) {
     EXPECT_EQ(to_unit(0), 0.0f);
     EXPECT_EQ(reverse_bits(1), 1u << 31);
     EXPECT_EQ(reverse_bits(0x12345678u), 0x1e6a2c48u);
+    const Sample2 early = sample2(5, 9), late = sample2(123456789, 77);
+    EXPECT_EQ(early.x, 0x1.bd4ee2p-1f);
+    EXPECT_EQ(early.y, 0x1.1d1388p-1f);
+    EXPECT_EQ(late.x, 0x1.bd09eap-1f);
+    EXPECT_EQ(late.y, 0x1.2bbf2cp-2f);
 }
 
 // Chi-square over 256 cells: mean 255, standard deviation 22.6; beyond 5 deviations it is not uniform.

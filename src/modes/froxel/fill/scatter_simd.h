@@ -108,15 +108,19 @@ SpreadPoints spread_points(const Fill& fill, size_t index, const FroxelLanes& fo
     const float froxel = static_cast<float>(fill.grid.tile);
     const int turn = fill.pass.frame * fill.samples() + job.sample;
     const auto number = static_cast<uint32_t>(turn * count + k);
+    const bool soft = is_soft(fill.scene.snapshot.lights[index]);
+    alignas(64) uint32_t keys[16];
     alignas(64) float u[3][16];
-    SpreadPoints points{fog, {}};
+    for (size_t i = 0; i < 16; ++i)
+        keys[i] = hash(static_cast<uint32_t>(job.where.tile[i]), static_cast<uint32_t>(job.slice),
+                       static_cast<uint32_t>(index));
     for (size_t i = 0; i < 16; ++i) {
-        const auto tile = static_cast<uint32_t>(job.where.tile[i]);
-        const uint32_t key = hash(tile, static_cast<uint32_t>(job.slice), static_cast<uint32_t>(index));
-        const Sample2 across = sample2(number, key);
+        const Sample2 across = sample2(number, keys[i]);
         u[0][i] = (across.x - 0.5f) * froxel, u[1][i] = (across.y - 0.5f) * froxel;
-        u[2][i] = random_unit(number, 0, 0, key), points.of_light[i] = sample2(number, hash(key, 1u));
+        u[2][i] = random_unit(number, 0, 0, keys[i]);
     }
+    SpreadPoints points{fog, {}};
+    for (size_t i = 0; i < 16 && soft; ++i) points.of_light[i] = sample2(number, hash(keys[i], 1u));
     const Floats x = load(u[0]), y = load(u[1]);
     Vec3s& point = points.froxels.point;
     point = fma(fog.toward, fog.length * load(u[2]), fog.start);
@@ -140,11 +144,11 @@ Floats alpha_share(const Fill& fill, size_t index, const FroxelLanes& lanes, con
     for (int k = 0; k < count; ++k) {
         const SpreadPoints at = spread_points(fill, index, fog, job, k, count);
         const LightSamples arrival = arrival16(light, fill.scene.cones[index], at.froxels.point);
-        const auto visible = [&](Through surfaces) HWY_ATTR {
-            return visible_at_points(*occluders, light, at.froxels, arrival, wanted,
+        const auto visible = [&](const Mask16& which, Through surfaces) HWY_ATTR {
+            return visible_at_points(*occluders, light, at.froxels, arrival, which,
                                      is_soft(light) ? at.of_light : nullptr, surfaces);
         };
-        const Floats by_alpha = visible(Through::alpha), by_all = visible(Through::all);
+        const Floats by_alpha = visible(wanted, Through::alpha), by_all = visible(by_alpha > 0.0f, Through::all);
         passed = passed + by_all, all = all + by_alpha;
         open = open + select(by_all > 0.0f, 1.0f, 0.0f);
         shaded = shaded + select((by_alpha > 0.0f) & (by_all <= 0.0f), 1.0f, 0.0f);
