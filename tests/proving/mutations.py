@@ -126,11 +126,12 @@ def build(folder, targets):
 
 
 def who_finds(folder, options, tests, targets):
-    """The tests that fail, or else the proving ground's word; nobody where all pass."""
+    """The first tests that fail, or else the proving ground's word; nobody where all pass."""
     ok, said = build(folder, targets)
     if not ok:
         sys.exit(f"does not build:\n{said}")
-    tested = run(["ctest", "--test-dir", "build/release", "-R", tests, "-LE", "nightly", "-j2"], folder)
+    tested = run(["ctest", "--test-dir", "build/release", "-R", tests, "-LE", "nightly", "-j2",
+                  "--stop-on-failure"], folder)
     failed = sorted({line.split(" - ")[1].split()[0] for line in tested.stdout.splitlines() if line.endswith("(Failed)")
                      or line.endswith("(Timeout)")})
     if failed:
