@@ -1,6 +1,7 @@
 #include "modes/shared_limitations.h"
 
 #include "integrate/march_steps.h"
+#include "modes/ambient_limitations.h"
 #include "modes/settings.h"
 #include "scene/light.h"
 #include "scene/scene.h"
@@ -55,11 +56,6 @@ void add_table(const Medium& medium, Limitations& limitations) {
                            medium.name,
                            {ratio}});
 }
-
-void add_unshadowed_ambient(const Snapshot& snapshot, Limitations& limitations) {
-    if (max_component(snapshot.ambient) > 0)
-        limitations.push_back({Severity::info, &limitation::unshadowed_ambient, Subject::scene});
-}
 }
 
 bool scatters_light(const Medium& medium) {
@@ -79,7 +75,7 @@ void add_single_scattering(const View& view, const Snapshot& snapshot, Limitatio
         limitations.push_back(
             {Severity::degraded, &limitation::single_scattering_only, Subject::medium, medium.name, {scattered}});
     }
-    add_unshadowed_ambient(snapshot, limitations);
+    add_unshadowed_ambient(view, snapshot, limitations);
     add_float_precision(view, snapshot, limitations);
 }
 
@@ -184,7 +180,7 @@ bool has_emitters(const Snapshot& snapshot) {
 }
 
 void add_fluence(const View& view, const Snapshot& snapshot, const Settings& settings, Limitations& limitations) {
-    add_unshadowed_ambient(snapshot, limitations);
+    add_unshadowed_ambient(view, snapshot, limitations);
     add_float_precision(view, snapshot, limitations);
     const auto is_endless = [](const Medium& medium) { return !is_finite(medium.world_bounds.size()); };
     const Box fog = fog_bounds(snapshot, light_reach(snapshot));

@@ -16,8 +16,6 @@ inline constexpr LimitationKind single_scattering_only{
                               "brighter and softer (--orders all adds multiple scattering in march and froxel)"};
 inline constexpr LimitationKind float_precision{
     "float_precision", "float precision at this distance from the origin is {} m: edges and shadows are no finer"};
-inline constexpr LimitationKind unshadowed_ambient{"unshadowed_ambient",
-                                                   "ambient light is not shadowed by surfaces or fog"};
 inline constexpr LimitationKind light_grid_cells{
     "light_grid_cells", "cells of the light grid are up to {} optical depths deep: light in dense parts is blurred"};
 inline constexpr LimitationKind long_steps{

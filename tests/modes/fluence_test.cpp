@@ -3,6 +3,7 @@
 #include "base/gauss_legendre.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "modes/ambient_limitations.h"
 #include "modes/froxel/froxel_fixtures.h"
 #include "modes/froxel/settings.h"
 #include "modes/mode.h"
