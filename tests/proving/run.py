@@ -40,8 +40,9 @@ LADDER_LIMIT = 3  # times the processor time of the longest run to a target: wha
 def scene_with_truth(seed, folder, wanted, options):
     """The first drawing of a seed whose truth, in the size drawn or else in the smallest, is found with one of the errors wanted:
     scene file, frame, truth and how many drawings took too long before. Truths are kept in a folder, where there is one."""
-    families = AUTHORED if getattr(options, "authored", False) else FAMILIES
-    program, known = options.program, options.truths / f"{seed}.npz" if options.truths else None
+    authored = getattr(options, "authored", False)
+    families, name = (AUTHORED, f"authored.{seed}") if authored else (FAMILIES, str(seed))
+    program, known = options.program, options.truths / f"{name}.npz" if options.truths else None
 
     def written(drawing, size, place):
         return write_scene(drawing, size, place, program)
