@@ -12,7 +12,7 @@
 
 namespace tyndall {
 namespace {
-constexpr uint32_t points = 32, directions = 16;
+constexpr uint32_t points = 32, directions = 16; // directions of a point: one packet of rays
 
 // The phase function of the medium that scatters most at a point.
 const Phase& main_phase(const Snapshot& snapshot, vec3 point) {
