@@ -5,6 +5,7 @@
 #include "trace/occlusion/occluders.h"
 #include "trace/snapshot.h"
 #include "trace/view.h"
+#include "volume/rays/fog_reach.h"
 
 #include <algorithm>
 #include <cmath>
@@ -32,9 +33,10 @@ double openness(const Snapshot& snapshot, const FogSample& fog, uint32_t seed) {
     return sum / directions;
 }
 
-// The ray through a point of the image, up to the first surface.
+// The ray through a point of the image, up to the first surface or the end of the fog.
 Ray visible_ray(const View& view, const Snapshot& snapshot, Sample2 at) {
     Ray ray = camera_ray(view.camera, view.size, vec2(at.x, at.y) * vec2(view.size));
+    ray.t_max = std::min(ray.t_max, fog_reach(snapshot.media, ray));
     if (!snapshot.occluders) return ray;
     Hits hits;
     snapshot.occluders->closest({&ray, 1}, 0, hits);

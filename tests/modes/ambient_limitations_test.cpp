@@ -41,10 +41,26 @@ TEST(AmbientLimitations, UnboundedFogBlocksAll) {
     EXPECT_EQ(blocked_ambient(view_of({0.5f, 0.5f, 9}, {0, 1, 0}), scene.snapshot), 1);
 }
 
+double e2(double x) { return std::exp(-x) + x * std::expint(-x); } // exponential integral
+
+// Looking up: all that is seen has optical depth x to the eye, E2(depth - x) / 2 above it, and opaque fog below.
+TEST(AmbientLimitations, HeightFogOpensUpwards) {
+    constexpr double depth = 0.5;
+    double open = 0, all = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const double x = depth * (i + 0.5) / 1000;
+        open += std::exp(-x) * e2(depth - x) / 2, all += std::exp(-x);
+    }
+    Medium fog = homogeneous_medium(static_cast<float>(depth / 20));
+    fog.density.kind = DensityKind::height;
+    fog.density.height_base = 0, fog.density.height_falloff = 20;
+    const TestScene scene = make_scene({fog}, {}, {}, vec3(1));
+    EXPECT_NEAR(blocked_ambient(view_of({0.5f, 0, 0.5f}, {0, 0, 1}), scene.snapshot), 1 - open / all, 0.03);
+}
+
 // A wide slab seen from above: (E2(x) + E2(y)) / 2 passes at optical depths x below the top and y above the bottom.
 TEST(AmbientLimitations, ASlabOfFogBlocksByExponentialIntegrals) {
     constexpr double depth = 0.5;
-    const auto e2 = [](double x) { return std::exp(-x) + x * std::expint(-x); };
     double open = 0, all = 0;
     for (int i = 0; i < 1000; ++i) {
         const double x = depth * (i + 0.5) / 1000;
